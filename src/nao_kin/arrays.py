@@ -1,0 +1,80 @@
+"""The one place where what a caller passes becomes a float64 array of a known shape.
+
+Every function returns a fresh, C-contiguous copy, so nothing downstream can change the caller's data, and raises
+`InvalidInputError` naming the argument, what was expected and what came.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nao_kin.errors import InvalidInputError
+
+__all__ = ["Floats", "frozen", "matrix", "rows", "vector"]
+
+Floats = NDArray[np.float64]
+
+
+def vector(value: ArrayLike, what: str, size: int) -> Floats:
+    """A finite vector of `size` numbers, copied.
+
+    Raises:
+        InvalidInputError: Not numbers, another shape, or not finite.
+    """
+    return _finite(_floats(value, what, f"{size} numbers"), what, (size,), f"{size} numbers")
+
+
+def matrix(value: ArrayLike, what: str, shape: tuple[int, int]) -> Floats:
+    """A finite matrix of the given shape, copied.
+
+    Raises:
+        InvalidInputError: Not numbers, another shape, or not finite.
+    """
+    expected = f"a {shape[0]}×{shape[1]} matrix"
+    return _finite(_floats(value, what, expected), what, shape, expected)
+
+
+def rows(value: ArrayLike, what: str, width: int) -> Floats:
+    """Finite rows of `width` numbers, shape (N, width), copied.
+
+    Raises:
+        InvalidInputError: Not numbers, another shape, or not finite (the first bad row is named).
+    """
+    expected = f"an (N, {width}) array"
+    array = _floats(value, what, expected)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise InvalidInputError(what, expected, f"shape {array.shape}")
+    return _finite(array, what, array.shape, expected)
+
+
+def frozen(array: Floats) -> Floats:
+    """The same array, read-only from here on."""
+    array.flags.writeable = False
+    return array
+
+
+def _floats(value: ArrayLike, what: str, expected: str) -> Floats:
+    try:
+        array = np.array(value, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise InvalidInputError(what, expected, f"{_short(value)} ({error})") from None
+    if np.iscomplexobj(value):
+        raise InvalidInputError(what, expected, "complex numbers")
+    return array
+
+
+def _finite(array: Floats, what: str, shape: tuple[int, ...], expected: str) -> Floats:
+    if array.shape != shape:
+        got = f"{array.size} numbers" if array.ndim == 1 else f"shape {array.shape}"
+        raise InvalidInputError(what, expected, got)
+    if not np.isfinite(array).all():
+        at = tuple(int(index) for index in np.argwhere(~np.isfinite(array))[0])
+        place = str(at[0]) if len(at) == 1 else str(at)
+        raise InvalidInputError(what, f"finite {expected.removeprefix('a ')}", f"{array[at]} at index {place}")
+    return array
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

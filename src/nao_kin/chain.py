@@ -1,0 +1,289 @@
+"""What a kinematic chain is, whatever computes it, and what can be done with any of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+
+from nao_kin.arrays import Floats, frozen, rows, vector
+from nao_kin.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    import pinocchio as pin
+    from numpy.typing import ArrayLike
+
+__all__ = [
+    "Chain",
+    "ChainJoint",
+    "JacobianFrame",
+    "LimitRule",
+    "OutsideLimit",
+    "configuration",
+    "finite_difference_jacobian",
+    "from_posture",
+    "in_limits",
+    "into_limits",
+    "jacobians_by_loop",
+    "neutral",
+    "outside_limits",
+    "poses_by_loop",
+    "random_configurations",
+    "reach_ball",
+    "stacked_limits",
+]
+
+JacobianFrame: TypeAlias = Literal["base", "tip"]
+
+
+@dataclass(frozen=True, slots=True)
+class ChainJoint:
+    """One column of a chain.
+
+    Attributes:
+        name: Joint name; of coupled joints, the leader.
+        kind: ``"revolute"`` [rad], ``"continuous"`` [rad, no limits] or ``"prismatic"`` [m].
+        lower: Least value, −inf where there is none.
+        upper: Greatest value, +inf where there is none.
+        max_velocity: Greatest speed [rad/s or m/s], +inf where none is known.
+    """
+
+    name: str
+    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
+    lower: float = -math.inf
+    upper: float = math.inf
+    max_velocity: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class LimitRule:
+    """A coupled limit: the range of one joint as a piecewise linear function of another joint's value.
+
+    Attributes:
+        joint: The joint whose range it is.
+        by: The joint that decides the range.
+        at: Values of `by` [rad], ascending.
+        lower: Least value of `joint` at each [rad].
+        upper: Greatest value of `joint` at each [rad].
+        even: True if only the size of `by` counts, not its sign.
+    """
+
+    joint: str
+    by: str
+    at: tuple[float, ...]
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    even: bool = False
+
+    def range(self, by: float) -> tuple[float, float]:
+        """Range of `joint` [rad] when the deciding joint stands at `by` [rad]; constant beyond the table's ends."""
+        value = abs(by) if self.even else by
+        return float(np.interp(value, self.at, self.lower)), float(np.interp(value, self.at, self.upper))
+
+
+@runtime_checkable
+class Chain(Protocol):
+    """A path of joints from a base frame to a tip frame, one plain number a joint.
+
+    `q` is a vector of n numbers in base-to-tip order [rad, or m for prismatic joints].
+    """
+
+    @property
+    def name(self) -> str:
+        """What to call it in messages."""
+
+    @property
+    def base_name(self) -> str:
+        """Name of the frame in which poses are given."""
+
+    @property
+    def tip_name(self) -> str:
+        """Name of the frame whose pose is given."""
+
+    @property
+    def joints(self) -> tuple[ChainJoint, ...]:
+        """The n joints, base to tip."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Their names."""
+
+    @property
+    def lower(self) -> Floats:
+        """Least values (n,), read-only."""
+
+    @property
+    def upper(self) -> Floats:
+        """Greatest values (n,), read-only."""
+
+    @property
+    def max_velocity(self) -> Floats:
+        """Greatest speeds (n,), read-only."""
+
+    @property
+    def limit_rules(self) -> tuple[LimitRule, ...]:
+        """Coupled limits both of whose joints are in the chain."""
+
+    def pose(self, q: ArrayLike) -> pin.SE3:
+        """T_base_tip at q."""
+
+    def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
+        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base or tip axes."""
+
+    def link_poses(self, q: ArrayLike) -> Floats:
+        """Poses (m, 4, 4) in the base frame of the link behind each of the m physical joints of the path."""
+
+    def poses(self, Q: ArrayLike) -> Floats:
+        """T_base_tip (N, 4, 4) for configurations (N, n)."""
+
+    def jacobians(self, Q: ArrayLike) -> Floats:
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutsideLimit:
+    """One joint that is outside its range: value and range [rad or m]."""
+
+    joint: str
+    value: float
+    lower: float
+    upper: float
+
+    def __str__(self) -> str:
+        return f"{self.joint} = {self.value:.6g} is outside [{self.lower:.6g}, {self.upper:.6g}]"
+
+
+def configuration(chain: Chain, q: ArrayLike) -> Floats:
+    """`q` as a fresh vector of the chain's length.
+
+    Raises:
+        InvalidInputError: Wrong length or not finite; the message names the joints.
+    """
+    n = len(chain.joints)
+    try:
+        return vector(q, f"q of {chain.name}", n)
+    except InvalidInputError as error:
+        names = ", ".join(chain.joint_names)
+        raise InvalidInputError(error.what, f"{error.expected} ({names})", error.got) from None
+
+
+def from_posture(chain: Chain, posture: dict[str, float]) -> Floats:
+    """The configuration of a chain out of a posture that may name more joints; joints not named are at 0."""
+    return np.array([posture.get(name, 0.0) for name in chain.joint_names], dtype=np.float64)
+
+
+def outside_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> tuple[OutsideLimit, ...]:
+    """The joints of `q` outside their own or their coupled range by more than `tolerance` [rad or m]."""
+    values = dict(zip(chain.joint_names, configuration(chain, q).tolist(), strict=True))
+    ranges = [(joint.name, joint.lower, joint.upper) for joint in chain.joints]
+    ranges += [(rule.joint, *rule.range(values[rule.by])) for rule in chain.limit_rules]
+    return tuple(
+        OutsideLimit(name, values[name], lower, upper)
+        for name, lower, upper in ranges
+        if values[name] < lower - tolerance or values[name] > upper + tolerance
+    )
+
+
+def in_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> bool:
+    """Whether every joint is inside its own and its coupled range."""
+    return not outside_limits(chain, q, tolerance)
+
+
+def into_limits(chain: Chain, q: Floats) -> Floats:
+    """The configuration with every joint moved to the nearest end of its range, coupled ranges last."""
+    moved = np.clip(q, chain.lower, chain.upper)
+    if chain.limit_rules:
+        index = {name: i for i, name in enumerate(chain.joint_names)}
+        for rule in chain.limit_rules:
+            lower, upper = rule.range(moved[index[rule.by]])
+            i = index[rule.joint]
+            moved[i] = min(max(moved[i], lower, chain.lower[i]), upper, chain.upper[i])
+    return moved
+
+
+def neutral(chain: Chain) -> Floats:
+    """All zeros, moved into the limits: where solvers start unless told otherwise."""
+    return into_limits(chain, np.zeros(len(chain.joints)))
+
+
+def random_configurations(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
+    """`count` configurations (count, n), uniform inside the limits; a joint without limits turns through ±π.
+
+    A prismatic joint without limits moves through ±1 m. Coupled limits are met by moving the limited joint into its
+    range, so its values gather at the ends there.
+    """
+    half = np.array([1.0 if joint.kind == "prismatic" else math.pi for joint in chain.joints])
+    lower = np.where(np.isfinite(chain.lower), chain.lower, np.minimum(-half, chain.upper - 2 * half))
+    upper = np.where(np.isfinite(chain.upper), chain.upper, np.maximum(half, lower))
+    Q = rng.uniform(lower, upper, size=(count, len(chain.joints)))
+    if chain.limit_rules:
+        Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)
+    return Q
+
+
+def poses_by_loop(chain: Chain, Q: ArrayLike) -> Floats:
+    """`chain.pose` of every row of Q (N, n), stacked to (N, 4, 4)."""
+    configurations = rows(Q, f"Q of {chain.name}", len(chain.joints))
+    return np.array([chain.pose(q).homogeneous for q in configurations]).reshape(-1, 4, 4)
+
+
+def jacobians_by_loop(chain: Chain, Q: ArrayLike) -> Floats:
+    """`chain.jacobian` of every row of Q (N, n), stacked to (N, 6, n)."""
+    n = len(chain.joints)
+    configurations = rows(Q, f"Q of {chain.name}", n)
+    return np.array([chain.jacobian(q) for q in configurations]).reshape(-1, 6, n)
+
+
+def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -> Floats:
+    """Frame Jacobian (6, n) in base axes by central differences of `chain.pose`: an oracle, not a fast path.
+
+    The angular rows come from the skew part of Ṙ Rᵀ, so they need no logarithm.
+    """
+    centre = configuration(chain, q)
+    R = chain.pose(centre).rotation
+    columns = []
+    for i in range(len(centre)):
+        forward, backward = centre.copy(), centre.copy()
+        forward[i] += step
+        backward[i] -= step
+        T_plus, T_minus = chain.pose(forward), chain.pose(backward)
+        linear = (T_plus.translation - T_minus.translation) / (2.0 * step)
+        W = (T_plus.rotation - T_minus.rotation) @ R.T / (2.0 * step)
+        angular = 0.5 * np.array([W[2, 1] - W[1, 2], W[0, 2] - W[2, 0], W[1, 0] - W[0, 1]])
+        columns.append(np.concatenate([linear, angular]))
+    return np.array(columns).T
+
+
+def reach_ball(chain: Chain) -> tuple[Floats, float]:
+    """A ball (centre (3,), radius) in the base frame [m] that the tip never leaves; proven, not tight.
+
+    A point on a joint's axis is fixed in the links on both sides of it, so the distances between such points of
+    consecutive joints are constant and their sum bounds the distance from the first one, which the base carries, to
+    the tip. A prismatic joint adds its largest travel. Without a bound (a prismatic joint without limits, or coupled
+    joints, whose column is no single axis) the radius is infinite.
+    """
+    zero = np.zeros(len(chain.joints))
+    tip, J = chain.pose(zero).translation, chain.jacobian(zero)
+    points: list[Floats] = []
+    travel = 0.0
+    for joint, v, w in zip(chain.joints, J[:3].T, J[3:].T, strict=True):
+        if joint.kind == "prismatic":
+            travel += max(abs(joint.lower), abs(joint.upper))
+            continue
+        if abs(np.linalg.norm(w) - 1.0) > 1e-9 or abs(v @ w) > 1e-9:
+            return np.zeros(3), math.inf
+        on_axis = tip + np.cross(w, v)
+        nearest = on_axis + w * (w @ (points[-1] - on_axis)) if points else on_axis - w * (w @ on_axis)
+        points.append(nearest)
+    points.append(tip)
+    rigid = sum(float(np.linalg.norm(b - a)) for a, b in zip(points, points[1:], strict=False))
+    return points[0], rigid + travel
+
+
+def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:
+    """Read-only arrays (lower, upper, max_velocity) of the joints."""
+    columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
+    lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
+    return lower, upper, velocity

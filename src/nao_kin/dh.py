@@ -1,0 +1,260 @@
+"""Denavit-Hartenberg chains: a hand-written table, computed exactly as it is written.
+
+The convention is always spelled, because the same numbers mean another arm in the other one:
+
+* ``"standard"`` (distal): A_k = Rz(θ) Tz(d) Tx(a) Rx(α); Denavit and Hartenberg 1955, Paul 1981.
+* ``"modified"`` (proximal): A_k = Rx(α) Tx(a) Rz(θ) Tz(d); Craig, Introduction to Robotics.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import pinocchio as pin
+
+from nao_kin.chain import (
+    ChainJoint,
+    JacobianFrame,
+    LimitRule,
+    configuration,
+    jacobians_by_loop,
+    poses_by_loop,
+    stacked_limits,
+)
+from nao_kin.dh_file import format_table_file, read_table_file
+from nao_kin.dh_row import (
+    PER_METRE,
+    PER_RADIAN,
+    Convention,
+    DHRow,
+    RowLike,
+    as_row,
+    dh_matrix,
+    in_si,
+    known_convention,
+)
+from nao_kin.errors import InvalidInputError
+from nao_kin.se3 import PoseLike, as_pose
+from nao_kin.table import Column, Table
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from nao_kin.arrays import Floats
+
+__all__ = ["Convention", "DHChain", "DHRow"]
+
+
+@dataclass(frozen=True, eq=False)
+class DHChain:
+    """A chain given by a DH table: T_base_tip = base · A_1(q_1) … A_n(q_n) · tool.
+
+    Implements the `nao_kin.chain.Chain` protocol by plain matrix products, without any model.
+
+    Attributes:
+        rows: The table, base to tip.
+        convention: ``"standard"`` or ``"modified"``; see the module.
+        base: Constant transform before the first row.
+        tool: Constant transform after the last row.
+        name: What to call it in messages.
+        base_name: Name of the frame in which poses are given.
+        tip_name: Name of the frame whose pose is given.
+    """
+
+    rows: tuple[DHRow, ...]
+    convention: Convention
+    base: pin.SE3
+    tool: pin.SE3
+    name: str = "table"
+    base_name: str = "base"
+    tip_name: str = "tip"
+
+    def __post_init__(self) -> None:
+        if not self.rows:
+            raise InvalidInputError(f"table {self.name}", "at least one row", "none")
+        known_convention(self.convention)
+
+    @classmethod
+    def from_table(
+        cls,
+        rows: Iterable[RowLike],
+        convention: Convention,
+        *,
+        base: PoseLike | None = None,
+        tool: PoseLike | None = None,
+        lengths: Literal["m", "mm"] = "m",
+        angles: Literal["rad", "deg"] = "rad",
+        name: str = "table",
+        base_name: str = "base",
+        tip_name: str = "tip",
+    ) -> DHChain:
+        """A chain from rows in the units of the document they come from.
+
+        Args:
+            rows: `DHRow`, mappings with its field names, or sequences (a, alpha, d, theta[, sign]).
+            convention: ``"standard"`` or ``"modified"``; there is no default.
+            base: Constant transform before the first row; its translation is in `lengths`.
+            tool: Constant transform after the last row; its translation is in `lengths`.
+            lengths: Unit of a, d, the translations and the limits of prismatic joints.
+            angles: Unit of alpha, theta and the limits of revolute joints.
+            name: What to call the chain.
+            base_name: Name of the frame in which poses are given.
+            tip_name: Name of the frame whose pose is given.
+
+        Raises:
+            InvalidInputError: Unknown convention or unit, a row of the wrong form, or a number that is not finite.
+        """
+        for what, value, known in (("lengths", lengths, PER_METRE), ("angles", angles, PER_RADIAN)):
+            if value not in known:
+                raise InvalidInputError(f"table {name}, {what}", " or ".join(map(repr, known)), repr(value))
+        known_convention(convention)
+        converted = tuple(
+            in_si(as_row(row, number), number, lengths, angles) for number, row in enumerate(rows, start=1)
+        )
+        ends = [as_pose(np.eye(4) if end is None else end, what) for end, what in ((base, "base"), (tool, "tool"))]
+        for end in ends:
+            end.translation = end.translation / PER_METRE[lengths]
+        return cls(converted, convention, ends[0], ends[1], name, base_name, tip_name)
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> DHChain:
+        """A chain from a TOML file; docs/dh-table.md describes the format.
+
+        Raises:
+            TableFileError: Unreadable or malformed; carries the line and what was expected.
+        """
+        return cls.from_table(**read_table_file(path))
+
+    def to_toml(self) -> str:
+        """The table as TOML in metres and radians; `from_file` gives the same chain back, bit for bit."""
+        rows = [{f.name: getattr(row, f.name) for f in fields(row)} for row in self.rows]
+        heading = {key: getattr(self, key) for key in ("name", "convention", "base_name", "tip_name")}
+        return format_table_file(heading, self.base.homogeneous, self.tool.homogeneous, rows)
+
+    def read_as(self, convention: Convention) -> DHChain:
+        """The same numbers read in a convention, which is another arm unless it is the table's own."""
+        return replace(self, convention=known_convention(convention))
+
+    @cached_property
+    def joints(self) -> tuple[ChainJoint, ...]:
+        """The n joints, base to tip."""
+        return tuple(
+            ChainJoint(row.name or f"joint_{k}", row.kind, row.lower, row.upper, row.max_velocity)
+            for k, row in enumerate(self.rows, start=1)
+        )
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def lower(self) -> Floats:
+        """Least values (n,), read-only; −inf where the table has none."""
+        return self._limits[0]
+
+    @property
+    def upper(self) -> Floats:
+        """Greatest values (n,), read-only; +inf where the table has none."""
+        return self._limits[1]
+
+    @property
+    def max_velocity(self) -> Floats:
+        """Greatest speeds (n,), read-only; +inf where the table has none."""
+        return self._limits[2]
+
+    @property
+    def limit_rules(self) -> tuple[LimitRule, ...]:
+        """None: a table does not state coupled limits."""
+        return ()
+
+    def pose(self, q: ArrayLike) -> pin.SE3:
+        """T_base_tip at q (n,) [rad, m].
+
+        Raises:
+            InvalidInputError: Wrong length or not finite.
+        """
+        return pin.SE3(self._frames(configuration(self, q))[-1] @ self.tool.homogeneous)
+
+    def link_poses(self, q: ArrayLike) -> Floats:
+        """Poses (n, 4, 4) in the base frame of the table's frame k = 1…n, each fixed to the link behind joint k."""
+        return self._frames(configuration(self, q))[1:]
+
+    def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
+        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
+
+        Column of a revolute joint: (z × (p_tip − p); z), with z the joint's axis and p a point on it.
+
+        Raises:
+            InvalidInputError: Wrong length, not finite, or another frame than these two.
+        """
+        if frame not in ("base", "tip"):
+            raise InvalidInputError("frame", "'base' or 'tip'", repr(frame))
+        frames = self._frames(configuration(self, q))
+        T_base_tip = frames[-1] @ self.tool.homogeneous
+        # A standard row turns about z of the frame before it, a modified row about z of its own frame.
+        turning = frames[:-1] if self.convention == "standard" else frames[1:]
+        J = np.zeros((6, len(self.rows)))
+        for k, (row, T) in enumerate(zip(self.rows, turning, strict=True)):
+            z = row.sign * T[:3, 2]
+            if row.kind == "prismatic":
+                J[:3, k] = z
+            else:
+                J[:3, k], J[3:, k] = np.cross(z, T_base_tip[:3, 3] - T[:3, 3]), z
+        if frame == "base":
+            return J
+        R = T_base_tip[:3, :3].T
+        return np.concatenate([R @ J[:3], R @ J[3:]])
+
+    def poses(self, Q: ArrayLike) -> Floats:
+        """T_base_tip (N, 4, 4) for configurations (N, n)."""
+        return poses_by_loop(self, Q)
+
+    def jacobians(self, Q: ArrayLike) -> Floats:
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
+        return jacobians_by_loop(self, Q)
+
+    @cached_property
+    def _limits(self) -> tuple[Floats, Floats, Floats]:
+        return stacked_limits(self.joints)
+
+    def _frames(self, q: Floats) -> Floats:
+        """The base and the n frames of the table in the base frame, (n + 1, 4, 4)."""
+        T = self.base.homogeneous
+        frames = [T]
+        for row, value in zip(self.rows, q.tolist(), strict=True):
+            T = T @ dh_matrix(row, value, self.convention)
+            frames.append(T)
+        return np.array(frames)
+
+    def __repr__(self) -> str:
+        return f"<DHChain {self.name} ({self.convention}): {', '.join(self.joint_names)}>"
+
+    def _repr_html_(self) -> str:
+        return self.row_table()._repr_html_()
+
+    def row_table(self) -> Table:
+        """The rows as a table in millimetres and degrees."""
+        rows = tuple(
+            (
+                joint.name,
+                f"{row.a * 1e3:.6g}",
+                f"{math.degrees(row.alpha):.6g}",
+                f"{row.d * 1e3:.6g}",
+                f"{math.degrees(row.theta):.6g}",
+                f"{row.sign:+d}",
+            )
+            for joint, row in zip(self.joints, self.rows, strict=True)
+        )
+        columns = (
+            Column("joint"),
+            *(Column(c, number=True) for c in ("a [mm]", "α [°]", "d [mm]", "θ offset [°]", "sign")),
+        )
+        return Table(columns, rows, title=f"{self.name}, {self.convention} convention")
