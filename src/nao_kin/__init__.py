@@ -1,1 +1,77 @@
-"""nao_kin."""
+"""nao_kin: the robot's model is the truth.
+
+Load a robot from a URDF, hold hand-written DH tables against it, solve inverse kinematics on it, write pages.
+Everything is imported on first use, so that `import nao_kin` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from nao_kin.chain import Chain as Chain
+    from nao_kin.chain import ChainJoint as ChainJoint
+    from nao_kin.chain import LimitRule as LimitRule
+    from nao_kin.crosscheck import Comparison as Comparison
+    from nao_kin.crosscheck import compare as compare
+    from nao_kin.dh import DHChain as DHChain
+    from nao_kin.dh_row import DHRow as DHRow
+    from nao_kin.documents.chains import document_chain as document_chain
+    from nao_kin.documents.chains import document_chain_names as document_chain_names
+    from nao_kin.errors import NaoKinError as NaoKinError
+    from nao_kin.ik.loop import Budget as Budget
+    from nao_kin.ik.methods import METHODS as METHODS
+    from nao_kin.ik.methods import solve as solve
+    from nao_kin.ik.problem import IKResult as IKResult
+    from nao_kin.ik.problem import Status as Status
+    from nao_kin.ik.target import Target as Target
+    from nao_kin.known import robot_names as robot_names
+    from nao_kin.robot import Robot as Robot
+    from nao_kin.robot import load as load
+    from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.urdf_chain import UrdfChain as UrdfChain
+    from nao_kin.view.export import export_html as export_html
+    from nao_kin.view.export import show as show
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Budget": "ik.loop",
+    "Chain": "chain",
+    "ChainJoint": "chain",
+    "Comparison": "crosscheck",
+    "DHChain": "dh",
+    "DHRow": "dh_row",
+    "IKResult": "ik.problem",
+    "LimitRule": "chain",
+    "METHODS": "ik.methods",
+    "NaoKinError": "errors",
+    "Robot": "robot",
+    "Status": "ik.problem",
+    "Target": "ik.target",
+    "Tolerances": "tolerances",
+    "UrdfChain": "urdf_chain",
+    "compare": "crosscheck",
+    "document_chain": "documents.chains",
+    "document_chain_names": "documents.chains",
+    "export_html": "view.export",
+    "load": "robot",
+    "robot_names": "known",
+    "show": "view.export",
+    "solve": "ik.methods",
+}
+
+__all__ = list(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOME])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, runtime_checkable
@@ -278,7 +279,7 @@ def reach_ball(chain: Chain) -> tuple[Floats, float]:
         nearest = on_axis + w * (w @ (points[-1] - on_axis)) if points else on_axis - w * (w @ on_axis)
         points.append(nearest)
     points.append(tip)
-    rigid = sum(float(np.linalg.norm(b - a)) for a, b in zip(points, points[1:], strict=False))
+    rigid = sum(float(np.linalg.norm(b - a)) for a, b in itertools.pairwise(points))
     return points[0], rigid + travel
 
 

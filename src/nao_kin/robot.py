@@ -21,10 +21,10 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
 from nao_kin.table import Column, Table
 from nao_kin.urdf import UrdfDocument, read_urdf
-from nao_kin.urdf_chain import Coupling, PinocchioLayout, UrdfChain, joint_range
+from nao_kin.urdf_chain import Coupling, UrdfChain, joint_range
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from nao_kin.arrays import Floats
     from nao_kin.urdf.elements import UrdfJoint
@@ -201,7 +201,8 @@ class Robot:
                 raise UnknownNameError("chain", base, self.chain_frames, self.name)
             return UrdfChain(self, *self.chain_frames[base], label=base)
         self._require_frames(base, tip)
-        return UrdfChain(self, base, tip)
+        named = (name for name, frames in self.chain_frames.items() if frames == (base, tip))
+        return UrdfChain(self, base, tip, label=next(named, ""))
 
     def path(self, base: str, tip: str) -> tuple[tuple[UrdfJoint, ...], tuple[UrdfJoint, ...]]:
         """The joints met going up the tree from base, then those met going down to tip; fixed ones included."""
@@ -236,7 +237,7 @@ class Robot:
         return frozenset(self.frame_names)
 
     def _pinocchio_q(self, full_posture: Mapping[str, float]) -> Floats:
-        layout = PinocchioLayout.of(self.model, self.joint_names)
+        layout = _Layout.of(self.model, self.joint_names)
         return layout.q(np.array([full_posture[name] for name in self.joint_names]))
 
     def __getstate__(self) -> dict[str, Any]:
@@ -259,6 +260,42 @@ class Robot:
             rows.append((joint.name, follows, f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}"))
         columns = (Column("joint"), Column("kind"), *(Column(c, number=True) for c in ("lower", "upper", "max speed")))
         return Table(columns, tuple(rows), title=f"{self.name}: joints [rad, rad/s; m, m/s]")
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where in Pinocchio's vectors the named joints are.
+
+    Attributes:
+        neutral: Pinocchio's own neutral configuration.
+        plain: Joints with one number: their places in our order, and in Pinocchio's vector.
+        turning: The same for continuous joints, which take a cosine and a sine.
+    """
+
+    neutral: Floats
+    plain: tuple[list[int], list[int]]
+    turning: tuple[list[int], list[int]]
+
+    @classmethod
+    def of(cls, model: pin.Model, names: Sequence[str]) -> _Layout:
+        """The layout of the named joints in a model."""
+        joints = [model.joints[model.getJointId(name)] for name in names]
+        plain = [k for k, joint in enumerate(joints) if joint.nq == 1]
+        turning = [k for k, joint in enumerate(joints) if joint.nq == 2]
+        return cls(
+            neutral=pin.neutral(model),
+            plain=(plain, [joints[k].idx_q for k in plain]),
+            turning=(turning, [joints[k].idx_q for k in turning]),
+        )
+
+    def q(self, values: Floats) -> Floats:
+        """Pinocchio's configuration vector: continuous joints become a cosine and a sine."""
+        q: Floats = self.neutral.copy()
+        source, target = self.plain
+        q[target] = values[source]
+        for k, i in zip(*self.turning, strict=True):
+            q[i], q[i + 1] = math.cos(values[k]), math.sin(values[k])
+        return q
 
 
 def _limit_rule(rule: CoupledLimit) -> LimitRule:

@@ -25,6 +25,7 @@ __all__ = [
     "from_xyz_rpy",
     "nearest_rotation",
     "position_distance",
+    "rotation_angle",
     "rotation_distance",
     "rotation_violation",
     "rotation_x",
@@ -93,7 +94,11 @@ def rotation_distance(T_a_b: pin.SE3, T_a_c: pin.SE3) -> float:
 
     The arc cosine of the trace loses half of the digits near 0 and π; the arc tangent of sine and cosine does not.
     """
-    R = T_a_b.rotation.T @ T_a_c.rotation
+    return rotation_angle(T_a_b.rotation.T @ T_a_c.rotation)
+
+
+def rotation_angle(R: Floats) -> float:
+    """Angle of a rotation matrix (3, 3) [rad], in [0, π]."""
     doubled_sine = math.hypot(R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
     return math.atan2(doubled_sine, R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import html
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
-    import rich.table
+    import rich.console
 
-__all__ = ["Column", "Table"]
+__all__ = ["Column", "Style", "Table"]
 
-Style = Literal["", "good", "bad", "faint"]
+Style: TypeAlias = Literal["", "good", "bad", "faint"]
 _COLOURS = {"": "", "good": "green", "bad": "red", "faint": "dim"}
 
 
@@ -41,18 +41,15 @@ class Table:
     note: str = ""
     styles: dict[int, Style] = field(default_factory=dict)
 
-    def __rich__(self) -> rich.table.Table:
+    def __rich__(self) -> rich.console.Group:
         import rich.box
+        import rich.console
         import rich.table
         import rich.text
 
         table = rich.table.Table(
             box=rich.box.SIMPLE_HEAD,
-            title=rich.text.Text(self.title) if self.title else None,
-            caption=rich.text.Text(self.note) if self.note else None,
-            title_justify="left",
-            caption_justify="left",
-            title_style="bold",
+            show_edge=False,
             pad_edge=False,
             padding=(0, 1),
         )
@@ -67,7 +64,10 @@ class Table:
             style = _COLOURS[self.styles.get(index, "")]
             # Text, not str: a link may be called "[red]" and must print as such.
             table.add_row(*(rich.text.Text(cell) for cell in row), style=style)
-        return table
+        # Lines of their own: rich would wrap a title to the width of a narrow table.
+        title = [rich.text.Text(self.title, style="bold")] if self.title else []
+        note = [rich.text.Text(self.note)] if self.note else []
+        return rich.console.Group(*title, table, *note)
 
     def _repr_html_(self) -> str:
         def cell(tag: str, text: str, column: Column) -> str:

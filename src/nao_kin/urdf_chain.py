@@ -24,6 +24,7 @@ from nao_kin.chain import (
     stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
+from nao_kin.se3 import from_xyz_rpy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot
     from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "PinocchioLayout", "UrdfChain", "joint_range"]
+__all__ = ["Coupling", "UrdfChain", "joint_range"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,55 +67,20 @@ class _Workspace(threading.local):
         self.data = model.createData()
 
 
-@dataclass(frozen=True)
-class PinocchioLayout:
-    """Where in Pinocchio's vectors the named joints are.
-
-    Attributes:
-        neutral: Pinocchio's own neutral configuration.
-        plain: Joints with one number: their places in our order, and in Pinocchio's vector.
-        turning: The same for continuous joints, which take a cosine and a sine.
-        columns: The joints' columns in Pinocchio's Jacobians.
-    """
-
-    neutral: Floats
-    plain: tuple[list[int], list[int]]
-    turning: tuple[list[int], list[int]]
-    columns: list[int]
-
-    @classmethod
-    def of(cls, model: pin.Model, names: Sequence[str]) -> PinocchioLayout:
-        """The layout of the named joints in a model."""
-        joints = [model.joints[model.getJointId(name)] for name in names]
-        plain = [k for k, joint in enumerate(joints) if joint.nq == 1]
-        turning = [k for k, joint in enumerate(joints) if joint.nq == 2]
-        return cls(
-            neutral=pin.neutral(model),
-            plain=(plain, [joints[k].idx_q for k in plain]),
-            turning=(turning, [joints[k].idx_q for k in turning]),
-            columns=[joint.idx_v for joint in joints],
-        )
-
-    def q(self, values: Floats) -> Floats:
-        """Pinocchio's configuration vector: continuous joints become a cosine and a sine."""
-        q: Floats = self.neutral.copy()
-        source, target = self.plain
-        q[target] = values[source]
-        for k, i in zip(*self.turning, strict=True):
-            q[i], q[i + 1] = math.cos(values[k]), math.sin(values[k])
-        return q
+_REFERENCE = {"base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED, "tip": pin.ReferenceFrame.LOCAL}
 
 
 class UrdfChain:
-    """A path through a robot; Pinocchio computes on a reduced model that holds the path's joints only.
+    """A path through a robot, on a Pinocchio model of its own that is rooted at the base and holds the path only.
 
-    The path may run up the tree and down again. A coupled joint adds to its leader's column; when its leader is not
-    on the path it stands for itself.
+    The path may run up the tree and down again: a joint met from its child's side turns the other way. A coupled joint
+    adds to its leader's column; when its leader is not on the path it stands for itself.
 
     Attributes:
         robot: The robot it belongs to.
         base: Frame in which poses are given.
         tip: Frame whose pose is given.
+        label: Its name among the robot's chains; may be empty.
     """
 
     def __init__(self, robot: Robot, base: str, tip: str, label: str = "") -> None:
@@ -126,28 +92,20 @@ class UrdfChain:
         self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
         names = set(self.joint_names)
         self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
-        self._column_of = [p.column for p in self._path]
-        self._scale = np.array([p.multiplier for p in self._path])
-        self._shift = np.array([p.offset for p in self._path])
-        self._spread = np.zeros((len(self._path), len(self._joints)))
-        self._spread[range(len(self._path)), self._column_of] = self._scale
-        self._reduce()
-
-    def _reduce(self) -> None:
-        """Lock every joint off the path at zero: none of them changes T_base_tip."""
-        model = self.robot.model
-        path = {p.joint.name for p in self._path}
-        locked = [i for i in range(1, model.njoints) if model.names[i] not in path]
-        self._model = pin.buildReducedModel(model, locked, pin.neutral(model))
-        self._layout = PinocchioLayout.of(self._model, [p.joint.name for p in self._path])
-        self._tip_id, self._base_id = (self._model.getFrameId(f, pin.FrameType.BODY) for f in (self.tip, self.base))
-        self._links_behind = [self._model.getFrameId(p.link_behind, pin.FrameType.BODY) for p in self._path]
+        self._model, self._link_ids, self._tip_id = _serial_model(robot, base, tip)
         self._workspace = _Workspace(self._model)
+        # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
+        self._spread: Floats | None = None
+        if any(p.follows for p in self._path):
+            self._spread = np.zeros((len(self._path), len(self._joints)))
+            for k, p in enumerate(self._path):
+                self._spread[k, p.column] = p.multiplier
+        self._shift = np.array([p.offset for p in self._path])
 
     @property
     def name(self) -> str:
         """Robot and chain, for messages."""
-        return f"{self.robot.name} {self.label or f'{self.base} → {self.tip}'}"
+        return f"{self.robot.name} {self.label or f'{self.base}→{self.tip}'}"
 
     @property
     def base_name(self) -> str:
@@ -196,9 +154,8 @@ class UrdfChain:
             InvalidInputError: Wrong length or not finite.
         """
         data = self._workspace.data
-        pin.framesForwardKinematics(self._model, data, self._pinocchio_q(configuration(self, q)))
-        T_base_tip: pin.SE3 = data.oMf[self._base_id].actInv(data.oMf[self._tip_id])
-        return T_base_tip
+        pin.forwardKinematics(self._model, data, self._joint_values(configuration(self, q)))
+        return pin.SE3(pin.updateFramePlacement(self._model, data, self._tip_id))
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
         """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
@@ -206,29 +163,17 @@ class UrdfChain:
         Raises:
             InvalidInputError: Wrong length, not finite, or another frame than these two.
         """
-        if frame not in ("base", "tip"):
+        if frame not in _REFERENCE:
             raise InvalidInputError("frame", "'base' or 'tip'", repr(frame))
-        data, model = self._workspace.data, self._model
-        pin.computeJointJacobians(model, data, self._pinocchio_q(configuration(self, q)))
-        pin.updateFramePlacements(model, data)
-        T_root_base, T_root_tip = data.oMf[self._base_id], data.oMf[self._tip_id]
-        world = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-        J = pin.getFrameJacobian(model, data, self._tip_id, world)
-        J_base = pin.getFrameJacobian(model, data, self._base_id, world)
-        # The tip's velocity as seen from the base: what the base would give a point of its own at the tip is not ours.
-        lever = T_root_tip.translation - T_root_base.translation
-        J[:3] -= J_base[:3] - pin.skew(lever) @ J_base[3:]
-        J[3:] -= J_base[3:]
-        R = (T_root_base if frame == "base" else T_root_tip).rotation.T
-        J = J[:, self._layout.columns] @ self._spread
-        return np.concatenate([R @ J[:3], R @ J[3:]])
+        values = self._joint_values(configuration(self, q))
+        J: Floats = pin.computeFrameJacobian(self._model, self._workspace.data, values, self._tip_id, _REFERENCE[frame])
+        return J if self._spread is None else J @ self._spread
 
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (m, 4, 4) in the base frame of the link behind each physical joint of the path, base to tip."""
         data = self._workspace.data
-        pin.framesForwardKinematics(self._model, data, self._pinocchio_q(configuration(self, q)))
-        T_root_base = data.oMf[self._base_id]
-        return np.array([T_root_base.actInv(data.oMf[i]).homogeneous for i in self._links_behind])
+        pin.framesForwardKinematics(self._model, data, self._joint_values(configuration(self, q)))
+        return np.array([data.oMf[i].homogeneous for i in self._link_ids])
 
     def poses(self, Q: ArrayLike) -> Floats:
         """T_base_tip (N, 4, 4) for configurations (N, n)."""
@@ -238,8 +183,8 @@ class UrdfChain:
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
         return jacobians_by_loop(self, Q)
 
-    def _pinocchio_q(self, q: Floats) -> Floats:
-        return self._layout.q(self._scale * q[self._column_of] + self._shift)
+    def _joint_values(self, q: Floats) -> Floats:
+        return q if self._spread is None else self._spread @ q + self._shift
 
     def __reduce__(self) -> tuple[Any, ...]:
         return UrdfChain, (self.robot, self.base, self.tip, self.label)
@@ -261,6 +206,32 @@ def _path_joints(robot: Robot, base: str, tip: str) -> tuple[_PathJoint, ...]:
             _PathJoint(joint, link_behind, leaders.index(c.leader), c.multiplier, c.offset, c.leader != joint.name)
         )
     return tuple(found)
+
+
+def _serial_model(robot: Robot, base: str, tip: str) -> tuple[pin.Model, list[int], int]:
+    """The path as a Pinocchio model rooted at base, the frame ids of the links behind its joints, and the tip's.
+
+    Continuous joints become revolute ones, so every joint takes one number.
+    """
+    model = pin.Model()
+    model.name = f"{base} to {tip}"
+    up, down = robot.path(base, tip)
+    parent, T_parent_here, links = 0, pin.SE3.Identity(), []
+    for joint, upward in [(j, True) for j in up] + [(j, False) for j in down]:
+        T_above_joint = from_xyz_rpy(joint.origin.xyz, joint.origin.rpy)
+        before, behind = (
+            (pin.SE3.Identity(), T_above_joint.inverse()) if upward else (T_above_joint, pin.SE3.Identity())
+        )
+        if joint.kind == "fixed":
+            T_parent_here = T_parent_here * before * behind
+            continue
+        axis = -np.array(joint.axis) if upward else np.array(joint.axis)
+        kind = pin.JointModelPrismaticUnaligned if joint.kind == "prismatic" else pin.JointModelRevoluteUnaligned
+        parent = model.addJoint(parent, kind(axis), T_parent_here * before, joint.name)
+        T_parent_here = behind
+        links.append(model.addFrame(pin.Frame(f"behind {joint.name}", parent, behind, pin.FrameType.OP_FRAME)))
+    tip_id = model.addFrame(pin.Frame("tip", parent, T_parent_here, pin.FrameType.OP_FRAME))
+    return model, links, tip_id
 
 
 def _columns(path: Sequence[_PathJoint]) -> tuple[ChainJoint, ...]:

@@ -1,0 +1,81 @@
+"""`nao-kin compare`: a table against a model, or any two chains."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nao_kin.cli.chains import SPEC_HELP, chain_from_spec
+from nao_kin.cli.output import FormatOption, OutputFormat, report, report_json
+
+if TYPE_CHECKING:
+    from nao_kin.chain import Chain
+
+__all__ = ["compare"]
+
+
+class ReadAs(StrEnum):
+    """Conventions to read a table in."""
+
+    standard = "standard"
+    modified = "modified"
+
+
+def compare(
+    table: Annotated[str, typer.Argument(help=SPEC_HELP)],
+    chain: Annotated[str | None, typer.Argument(help="The same; default for a document chain: its robot.")] = None,
+    read_as: Annotated[ReadAs | None, typer.Option(help="Read the table in this convention, not its own.")] = None,
+    samples: Annotated[int, typer.Option(min=1, help="Random configurations.")] = 1000,
+    seed: Annotated[int, typer.Option(help="Seed of the random configurations.")] = 0,
+    format: FormatOption = OutputFormat.text,
+) -> None:
+    """Hold two chains against each other exactly as given; exit status 1 if they disagree."""
+    from nao_kin.crosscheck import compare as hold_against
+
+    a = chain_from_spec(table)
+    if read_as is not None:
+        from nao_kin.dh import DHChain
+
+        if not isinstance(a, DHChain):
+            raise typer.BadParameter("--read-as is for tables; a robot's model has no convention.")
+        a = a.read_as(read_as.value)
+    b = chain_from_spec(chain) if chain is not None else _model_of(table)
+    found = hold_against(a, b, samples=samples, seed=seed)
+    if format is OutputFormat.json:
+        departure = found.first_departure
+        report_json(
+            {
+                "a": a.name,
+                "b": b.name,
+                "agrees": found.agrees,
+                "max_position_error": found.max_position_error,
+                "max_rotation_error": found.max_rotation_error,
+                "max_jacobian_error": found.max_jacobian_error,
+                "worst_position_q": found.worst_position_q,
+                "worst_rotation_q": found.worst_rotation_q,
+                "first_departure": departure
+                and {
+                    "joint": departure.joint,
+                    "number": departure.number,
+                    "position": departure.position,
+                    "rotation": departure.rotation,
+                },
+                "samples": found.samples,
+            }
+        )
+    else:
+        report(found.table())
+    if not found.agrees:
+        raise typer.Exit(1)
+
+
+def _model_of(table: str) -> Chain:
+    from nao_kin.documents.chains import DOCUMENT_CHAINS
+    from nao_kin.robot import load
+
+    if table not in DOCUMENT_CHAINS:
+        raise typer.BadParameter(f"say what to hold {table} against: ROBOT:CHAIN or ROBOT:BASE:TIP.")
+    document = DOCUMENT_CHAINS[table]
+    return load(document.robot).chain(document.base, document.tip)

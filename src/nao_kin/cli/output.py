@@ -1,0 +1,73 @@
+"""What every command prints with: reports on standard output, everything else on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from nao_kin.table import Table
+
+__all__ = ["FormatOption", "OutputFormat", "progress", "report", "report_json", "rows_of_numbers"]
+
+
+T = TypeVar("T")
+
+
+class OutputFormat(StrEnum):
+    """How a command prints."""
+
+    text = "text"
+    json = "json"
+
+
+FormatOption = Annotated[OutputFormat, typer.Option("--format", help="How to print.")]
+
+
+def report(*parts: Table | str) -> None:
+    """Prints tables and lines on standard output, coloured on a terminal unless NO_COLOR is set."""
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    for part in parts:
+        console.print(Text(part) if isinstance(part, str) else part)
+
+
+def report_json(data: Any) -> None:
+    """Prints JSON on standard output; numbers that JSON has no word for become null."""
+    typer.echo(json.dumps(_plain(data), indent=2, allow_nan=False, ensure_ascii=False))
+
+
+def progress(items: Iterable[T], what: str, total: int) -> Iterator[T]:
+    """Passes the items on, with a progress bar on standard error where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    from rich.console import Console
+    from rich.progress import track
+
+    yield from track(items, description=what, total=total, console=Console(stderr=True), transient=True)
+
+
+def rows_of_numbers(matrix: Any, indent: str = "  ") -> str:
+    """A matrix as lines of numbers, six decimals, rounding's −0 shown as 0."""
+    return "\n".join(indent + " ".join(f"{round(float(x), 6) + 0.0:10.6f}" for x in row) for row in matrix)
+
+
+def _plain(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_plain(value) for value in data]
+    if hasattr(data, "tolist"):
+        return _plain(data.tolist())
+    if isinstance(data, float) and (data != data or data in (float("inf"), float("-inf"))):
+        return None
+    return data

@@ -1,0 +1,99 @@
+"""Every hand-written chain of the documents by name, each with the model it is about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from nao_kin.documents import kofinas, matlab_head, practicum, thesis
+from nao_kin.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from nao_kin.dh import DHChain
+
+__all__ = ["DOCUMENT_CHAINS", "DocumentChain", "document_chain", "document_chain_names", "documents_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentChain:
+    """A chain of a document and the chain of a robot that it describes.
+
+    Attributes:
+        build: Makes the chain as printed.
+        robot: Known robot that the document is about.
+        base: Base frame there.
+        tip: Tip frame there.
+        source: Document and place in it.
+    """
+
+    build: Callable[[], DHChain]
+    robot: str
+    base: str
+    tip: str
+    source: str
+
+
+_KOFINAS = "Kofinas et al. 2013"
+
+DOCUMENT_CHAINS: Final[dict[str, DocumentChain]] = {
+    "thesis_left_arm": DocumentChain(
+        thesis.left_arm, "nao_v50_h21", "torso", "LArm", "Bischoff 2016, Table 3 and (3.1.0.1)"
+    ),
+    "thesis_right_arm": DocumentChain(
+        thesis.right_arm, "nao_v50_h21", "torso", "RArm", "Bischoff 2016, Table 4 and (3.1.0.2)"
+    ),
+    "matlab_head": DocumentChain(
+        matlab_head.head, "nao_v33_h25", "torso", "CameraTop_frame", "MATLAB example, getKinematicChain('head')"
+    ),
+    "matlab_left_hand": DocumentChain(
+        matlab_head.left_hand, "nao_v33_h21", "torso", "LArm", "MATLAB example, getKinematicChain('lefthand')"
+    ),
+    "practicum_jaco2": DocumentChain(
+        practicum.jaco2, "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
+    ),
+    "kofinas_head": DocumentChain(kofinas.head, "nao_v33_h25", "torso", "Head", _KOFINAS),
+    "kofinas_left_arm": DocumentChain(partial(kofinas.arm, "left"), "nao_v33_h25", "torso", "LArm", _KOFINAS),
+    "kofinas_right_arm": DocumentChain(partial(kofinas.arm, "right"), "nao_v33_h25", "torso", "RArm", _KOFINAS),
+    "kofinas_left_arm_h21": DocumentChain(
+        partial(kofinas.arm, "left", "h21"), "nao_v33_h21", "torso", "LArm", _KOFINAS
+    ),
+    "kofinas_right_arm_h21": DocumentChain(
+        partial(kofinas.arm, "right", "h21"), "nao_v33_h21", "torso", "RArm", _KOFINAS
+    ),
+    "kofinas_left_leg": DocumentChain(partial(kofinas.leg, "left"), "nao_v33_h25", "torso", "LLeg", _KOFINAS),
+    "kofinas_right_leg": DocumentChain(partial(kofinas.leg, "right"), "nao_v33_h25", "torso", "RLeg", _KOFINAS),
+}
+
+
+def document_chain(name: str) -> DHChain:
+    """A chain of the source documents, as printed.
+
+    Raises:
+        UnknownNameError: There is none of that name; carries near matches.
+    """
+    return entry(name).build()
+
+
+def document_chain_names() -> tuple[str, ...]:
+    """The names that `document_chain` takes."""
+    return tuple(DOCUMENT_CHAINS)
+
+
+def entry(name: str) -> DocumentChain:
+    """The entry of a chain: its source and the model it is about.
+
+    Raises:
+        UnknownNameError: There is none of that name; carries near matches.
+    """
+    try:
+        return DOCUMENT_CHAINS[name]
+    except KeyError:
+        raise UnknownNameError("document chain", name, DOCUMENT_CHAINS) from None
+
+
+def documents_of(robot: str, base: str, tip: str) -> tuple[str, ...]:
+    """Names of the document chains that describe this path of a known robot."""
+    return tuple(n for n, d in DOCUMENT_CHAINS.items() if (d.robot, d.base, d.tip) == (robot, base, tip))

@@ -1,0 +1,1 @@
+"""Inverse kinematics: problems, methods, and results that were measured again."""

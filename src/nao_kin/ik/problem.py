@@ -1,0 +1,179 @@
+"""An inverse kinematics problem, the reasons a solver may end for, and the judge that alone may say "solved"."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from nao_kin.arrays import Floats, frozen
+from nao_kin.chain import Chain, OutsideLimit, outside_limits
+from nao_kin.table import Column, Table
+from nao_kin.tolerances import TOLERANCES, Tolerances
+
+if TYPE_CHECKING:
+    from nao_kin.ik.target import Target
+
+__all__ = ["IKResult", "Problem", "Run", "Status", "Trace", "judge"]
+
+
+class Status(enum.Enum):
+    """Why a solver ended, as a sentence."""
+
+    SOLVED = "The target is reached: the returned joints were measured again and are within tolerance and limits."
+    STALLED = "No start came closer any more: a local minimum, a limit, or a target out of reach."
+    BUDGET_SPENT = "The iteration budget ran out while the error was still falling."
+    OUT_OF_REACH = "The target lies farther from the chain than its links are long."
+    OUTSIDE_LIMITS = "The tip is at the target, but a joint is outside its range."
+    NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Problem:
+    """What is wanted of a chain.
+
+    Attributes:
+        chain: The chain.
+        target: What its tip is to do, in the chain's base frame.
+        tolerances: When the target counts as reached.
+    """
+
+    chain: Chain
+    target: Target
+    tolerances: Tolerances = TOLERANCES
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Trace:
+    """What an iteration went through, one row an iterate.
+
+    Attributes:
+        q: Joints (k, n) [rad or m].
+        position_error: Position errors (k,) [m].
+        rotation_error: Rotation errors (k,) [rad]; NaN where the target leaves the orientation free.
+        start: Number of the start that the iterate belongs to (k,); 0 is the caller's.
+    """
+
+    q: Floats
+    position_error: Floats
+    rotation_error: Floats
+    start: Floats
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Run:
+    """What a solver hands to the judge.
+
+    Attributes:
+        q: The best joints found (n,).
+        ended: Why it stopped; a claim of success is checked, every other reason is kept.
+        iterations: Iterations over all starts.
+        starts: Starts tried, the caller's included.
+        start_moved: True if the caller's q0 was outside the limits and was moved inside.
+        misses_by: Where the target is proven out of reach, a lower bound of the distance it misses by [m].
+        branch: Label of the closed-form branch; empty for iterative methods.
+        trace: The iterates, where they were asked for.
+    """
+
+    q: Floats
+    ended: Status
+    iterations: int = 0
+    starts: int = 1
+    start_moved: bool = False
+    misses_by: float = 0.0
+    branch: str = ""
+    trace: Trace | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class IKResult:
+    """A set of joints that the judge measured.
+
+    Attributes:
+        problem: What was wanted.
+        q: The joints (n,) [rad or m], read-only; the best found if unsolved, always finite.
+        status: Why the solver ended.
+        position_error: Distance of the tip to the target [m], measured at `q`.
+        rotation_error: Angle to the wanted orientation [rad], measured at `q`; None where it is free.
+        outside: Joints outside their ranges.
+        run: What the solver reported.
+    """
+
+    problem: Problem
+    q: Floats
+    status: Status
+    position_error: float
+    rotation_error: float | None
+    outside: tuple[OutsideLimit, ...]
+    run: Run = field(repr=False)
+
+    @property
+    def solved(self) -> bool:
+        """Whether the measured pose is within tolerance and every joint within its limits."""
+        return self.status is Status.SOLVED
+
+    @property
+    def posture(self) -> dict[str, float]:
+        """The joints by name [rad or m]."""
+        return dict(zip(self.problem.chain.joint_names, self.q.tolist(), strict=True))
+
+    @property
+    def branch(self) -> str:
+        """Label of the closed-form branch; empty for iterative methods."""
+        return self.run.branch
+
+    @property
+    def trace(self) -> Trace | None:
+        """The iterates, where they were asked for."""
+        return self.run.trace
+
+    @property
+    def iterations(self) -> int:
+        """Iterations over all starts."""
+        return self.run.iterations
+
+    @property
+    def message(self) -> str:
+        """The status with the measured errors, for people."""
+        parts = [self.status.value, f"Position error {self.position_error:.3g} m"]
+        if self.rotation_error is not None:
+            parts[-1] += f", rotation error {self.rotation_error:.3g} rad"
+        parts[-1] += f" after {self.run.iterations} iterations from {self.run.starts} start(s)."
+        if self.run.misses_by:
+            parts.append(f"It misses by at least {self.run.misses_by:.3g} m.")
+        parts += [f"{outside}." for outside in self.outside]
+        if self.run.start_moved:
+            parts.append("The start was outside the limits and was moved inside.")
+        return " ".join(parts)
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("An IKResult is not a truth value: ask for result.solved, and read result.status if it is not.")
+
+    def __repr__(self) -> str:
+        return f"<IKResult {self.status.name}: {self.message.removeprefix(self.status.value).strip()}>"
+
+    def _repr_html_(self) -> str:
+        rows = tuple((name, f"{value:.6f}", f"{np.degrees(value):.3f}") for name, value in self.posture.items())
+        columns = (Column("joint"), Column("value [rad, m]", number=True), Column("[°]", number=True))
+        return Table(columns, rows, title=self.status.name, note=self.message)._repr_html_()
+
+
+def judge(problem: Problem, run: Run) -> IKResult:
+    """Measures the returned joints with the chain's own forward kinematics; only this may say `Status.SOLVED`."""
+    q = run.q.copy()
+    finite = bool(np.isfinite(q).all())
+    if not finite:
+        q = np.nan_to_num(q, nan=0.0, posinf=0.0, neginf=0.0)
+    position, rotation = problem.target.distances(problem.chain.pose(q))
+    outside = outside_limits(problem.chain, q, problem.tolerances.limits)
+    reached = position <= problem.tolerances.position and (rotation or 0.0) <= problem.tolerances.rotation
+    if not finite:
+        status = Status.NOT_FINITE
+    elif reached:
+        status = Status.OUTSIDE_LIMITS if outside else Status.SOLVED
+    else:
+        # A claim of success that the measurement does not confirm is a solver that stopped short of it.
+        status = Status.STALLED if run.ended in (Status.SOLVED, Status.OUTSIDE_LIMITS) else run.ended
+    return IKResult(problem, frozen(q), status, position, rotation, outside, run)
