@@ -1,0 +1,34 @@
+"""What several test modules share: robots loaded once, and skips that CI does not accept."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+
+import numpy as np
+import pytest
+
+import nao_kin as nk
+from nao_kin.known import KNOWN_ROBOTS, example_robot_data_share
+
+BUNDLED = tuple(name for name, robot in KNOWN_ROBOTS.items() if robot.source == "bundled")
+EXAMPLES = tuple(name for name, robot in KNOWN_ROBOTS.items() if robot.source != "bundled")
+
+
+@cache
+def robot(name: str) -> nk.Robot:
+    """A known robot, loaded once."""
+    return nk.load(name)
+
+
+def needs_examples() -> None:
+    """Skip without example-robot-data, except in CI, where it must be there."""
+    if example_robot_data_share() is None:
+        if os.environ.get("CI") == "true":
+            pytest.fail("the extra 'robots' must be installed in CI")
+        pytest.skip("the extra 'robots' (example-robot-data) is not installed")
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(20160401)
