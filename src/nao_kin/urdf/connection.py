@@ -1,0 +1,142 @@
+"""Structural rules about how joints connect links into a tree and follow one another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nao_kin.errors import near_matches
+from nao_kin.urdf.outline import MOVING, Defect, Outline, describe, first, line_of, link_named, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from lxml import etree
+
+__all__ = [
+    "cycles",
+    "link_references",
+    "mimic_cycles",
+    "mimic_references",
+    "no_links",
+    "several_roots",
+    "two_parents",
+]
+
+_COMPARED = 64  # longer names are not compared: the time that takes grows with the square of their length
+
+
+def link_references(outline: Outline) -> Iterator[Defect]:
+    """Every joint has a parent and a child, both are links of the file, and they differ."""
+    for joint in outline.joints:
+        where = describe(joint)
+        for end in ("parent", "child"):
+            element, name = first(joint, end), link_named(joint, end)
+            if element is None:
+                yield Defect(line_of(joint), where, f"The {where} has no <{end}>.", f'Add <{end} link="..."/>.')
+            elif not name:
+                yield Defect(line_of(element), where, f"The <{end}> of the {where} names no link.")
+            elif name not in outline.link_by_name:
+                message = f"The {end} {shown(name)} of the {where} is not a link of this file."
+                yield Defect(line_of(element), where, message, _near_hint(name, outline.link_by_name))
+        parent = link_named(joint, "parent")
+        if parent and parent == link_named(joint, "child"):
+            yield Defect(line_of(joint), where, f"The {where} connects the link {shown(parent)} with itself.")
+
+
+def mimic_references(outline: Outline) -> Iterator[Defect]:
+    """A follower names a moving joint of the file other than itself."""
+    for joint in outline.moving:
+        mimic = first(joint, "mimic")
+        if mimic is None:
+            continue
+        leader, where = mimic.get("joint", ""), describe(joint)
+        if not leader:
+            yield Defect(line_of(mimic), where, f"The <mimic> of the {where} names no joint.")
+        elif leader == joint.get("name"):
+            yield Defect(line_of(mimic), where, f"The {where} mimics itself.", "Name another joint.")
+        elif leader not in outline.joint_by_name:
+            message = f"The {where} mimics {shown(leader)}, which is not a joint of this file."
+            yield Defect(line_of(mimic), where, message, _near_hint(leader, outline.joint_by_name))
+        elif outline.joint_by_name[leader].get("type") not in MOVING:
+            yield Defect(line_of(mimic), where, f"The {where} mimics {shown(leader)}, which does not move.")
+
+
+def no_links(outline: Outline) -> Iterator[Defect]:
+    """There is something to move."""
+    if not outline.links:
+        yield Defect(line_of(outline.root), "robot", "The robot has no links.")
+
+
+def two_parents(outline: Outline) -> Iterator[Defect]:
+    """A link is the child of at most one joint."""
+    claimed: dict[str, etree._Element] = {}
+    for joint in outline.joints:
+        child = link_named(joint, "child")
+        if child in claimed:
+            message = f"The link {shown(child)} is the child of the {describe(claimed[child])} already."
+            hint = "A URDF is a tree: close a loop in the program, not in the file."
+            yield Defect(line_of(joint), describe(joint), message, hint)
+        claimed.setdefault(child, joint)
+
+
+def several_roots(outline: Outline) -> Iterator[Defect]:
+    """Only one link is not the child of a joint."""
+    roots = [link for link in outline.links if not outline.child_counts[link.get("name", "")]]
+    for link in roots[1:]:
+        message = f"The {describe(link)} hangs on no joint, and neither does the {describe(roots[0])}."
+        yield Defect(line_of(link), describe(link), message, "Connect them by a joint, or remove one.")
+
+
+def cycles(outline: Outline) -> Iterator[Defect]:
+    """Going from child to parent always ends at the root."""
+    joint_above = {link_named(joint, "child"): joint for joint in reversed(outline.joints)}
+    above = {child: link_named(joint, "parent") for child, joint in joint_above.items()}
+    found: list[Defect] = []
+    for ring in _rings(above):
+        joint = min((joint_above[name] for name in ring), key=line_of)
+        message = f"The links {_listed(ring)} form a closed loop, which no root reaches."
+        found.append(Defect(line_of(joint), describe(joint), message, "A URDF is a tree."))
+    yield from sorted(found, key=lambda defect: defect.line or 0)
+
+
+def mimic_cycles(outline: Outline) -> Iterator[Defect]:
+    """Going from follower to leader always ends at a joint that follows none."""
+    mimic_of = {
+        joint.get("name", ""): mimic for joint in outline.moving if (mimic := first(joint, "mimic")) is not None
+    }
+    leaders = {name: mimic.get("joint", "") for name, mimic in mimic_of.items()}
+    found: list[Defect] = []
+    for ring in _rings(leaders):
+        mimic = min((mimic_of[name] for name in ring), key=line_of)
+        message = f"The joints {_listed(ring)} mimic one another in a circle."
+        found.append(Defect(line_of(mimic), describe(mimic), message, "One of them has to lead."))
+    yield from sorted(found, key=lambda defect: defect.line or 0)
+
+
+def _rings(successor: dict[str, str]) -> list[list[str]]:
+    """The closed rings of a map from each name to the next, in time proportional to its size."""
+    done: set[str] = set()
+    rings: list[list[str]] = []
+    for start in successor:
+        trail: dict[str, None] = {}
+        name = start
+        while name in successor and name not in done and name not in trail:
+            trail[name] = None
+            name = successor[name]
+        if name in trail:
+            walked = list(trail)
+            rings.append(walked[walked.index(name) :])
+        done.update(trail)
+    return rings
+
+
+def _listed(names: list[str]) -> str:
+    texts = [shown(name) for name in names[:6]]
+    return ", ".join(texts) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+
+
+def _near_hint(name: str, known: Iterable[str]) -> str:
+    if len(name) > _COMPARED:
+        return ""
+    near = near_matches(name, (candidate for candidate in known if len(candidate) <= _COMPARED))
+    return f"Did you mean {' or '.join(map(repr, near))}?" if near else ""

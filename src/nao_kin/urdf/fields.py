@@ -1,0 +1,127 @@
+"""Every number that is read from a URDF file: where it stands, how many there are, what it may be.
+
+The rules check the file against this table and the reader takes its numbers from it, so the two cannot part.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from nao_kin.urdf.outline import tag_of
+
+if TYPE_CHECKING:
+    from lxml import etree
+
+__all__ = ["FIELDS", "Field", "decimal_numbers", "fields_of", "optional_number", "read_numbers"]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One attribute that holds numbers.
+
+    Attributes:
+        attribute: Its name.
+        count: How many numbers it holds.
+        required: Whether the element means nothing without it.
+        minimum: Smallest value allowed, or None.
+    """
+
+    attribute: str
+    count: int = 1
+    required: bool = False
+    minimum: float | None = None
+
+
+_ORIGIN = (Field("xyz", 3), Field("rpy", 3))
+_ROUND = (Field("radius", required=True, minimum=0.0),)
+_INERTIA = tuple(Field(name, required=True) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+_COLOUR = (Field("rgba", 4, required=True),)
+
+
+def _solid_fields(tag: str) -> dict[tuple[str, ...], tuple[Field, ...]]:
+    geometry = ("link", tag, "geometry")
+    return {
+        ("link", tag, "origin"): _ORIGIN,
+        (*geometry, "box"): (Field("size", 3, required=True, minimum=0.0),),
+        (*geometry, "cylinder"): (*_ROUND, Field("length", required=True, minimum=0.0)),
+        (*geometry, "sphere"): _ROUND,
+        (*geometry, "mesh"): (Field("scale", 3),),
+        ("link", tag, "material", "color"): _COLOUR,
+    }
+
+
+FIELDS: dict[tuple[str, ...], tuple[Field, ...]] = {
+    ("link", "inertial", "origin"): _ORIGIN,
+    ("link", "inertial", "mass"): (Field("value", required=True, minimum=0.0),),
+    ("link", "inertial", "inertia"): _INERTIA,
+    **_solid_fields("visual"),
+    **_solid_fields("collision"),
+    ("material", "color"): _COLOUR,
+    ("joint", "origin"): _ORIGIN,
+    ("joint", "axis"): (Field("xyz", 3, required=True),),
+    ("joint", "limit"): (
+        Field("lower"),
+        Field("upper"),
+        Field("velocity", minimum=0.0),
+        Field("effort", minimum=0.0),
+    ),
+    ("joint", "mimic"): (Field("multiplier"), Field("offset")),
+}
+"""Fields by the path of their element below the root."""
+
+_LONGEST_PATH = max(map(len, FIELDS))
+_LEAVES = frozenset(path[-1] for path in FIELDS)
+
+# float() would also take hexadecimal-looking words, "nan", "infinity", "1_000" and digits of other scripts.
+_DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WORD = re.compile(r"[^ \t\r\n]+")  # the blanks of XML; str.split() knows many more
+
+
+def fields_of(element: etree._Element) -> tuple[Field, ...]:
+    """The number fields of an element by where it stands; empty for every other element."""
+    if tag_of(element) not in _LEAVES:
+        return ()
+    path: list[str] = []
+    node = element
+    while (parent := node.getparent()) is not None:
+        path.insert(0, tag_of(node))
+        if len(path) > _LONGEST_PATH:
+            return ()
+        node = parent
+    return FIELDS.get(tuple(path), ())
+
+
+def decimal_numbers(text: str, count: int) -> tuple[float, ...]:
+    """Read exactly `count` finite decimal numbers separated by blanks.
+
+    Raises:
+        ValueError: There are more or fewer, or one is not a finite decimal number; the message is a predicate such as
+            "holds 2 numbers instead of 3".
+    """
+    words = _WORD.findall(text)
+    if len(words) != count:
+        numbers = "1 number" if len(words) == 1 else f"{len(words)} numbers"
+        raise ValueError(f"holds {numbers if words else 'no number'} instead of {count}")
+    for word in words:
+        if not _DECIMAL.fullmatch(word):
+            raise ValueError(f"holds {word[:40]!r}, which is not a finite decimal number")
+    values = tuple(map(float, words))
+    for word, value in zip(words, values, strict=True):
+        if not math.isfinite(value):
+            raise ValueError(f"holds {word[:40]!r}, which is beyond the largest number a computer can hold")
+    return values
+
+
+def read_numbers(element: etree._Element | None, attribute: str, default: tuple[float, ...]) -> tuple[float, ...]:
+    """The numbers of an attribute that the rules have passed, `default` where element or attribute is missing."""
+    text = None if element is None else element.get(attribute)
+    return default if text is None else decimal_numbers(text, len(default))
+
+
+def optional_number(element: etree._Element, attribute: str) -> float | None:
+    """One number of an attribute that the rules have passed, None where it is missing."""
+    text = element.get(attribute)
+    return None if text is None else decimal_numbers(text, 1)[0]

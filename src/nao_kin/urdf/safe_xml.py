@@ -1,0 +1,158 @@
+"""From hostile bytes to an element tree, or to a refusal with a line.
+
+Whatever can be decided on the bytes (size, encoding, DOCTYPE, amount of markup) is decided before the XML parser sees
+them, so that the parser's time and memory are bounded too.
+"""
+
+from __future__ import annotations
+
+import re
+
+from lxml import etree
+
+from nao_kin.errors import UrdfError
+from nao_kin.urdf.limits import LIMITS
+
+__all__ = ["read_tree"]
+
+_BYTE_ORDER_MARKS = {
+    b"\xff\xfe\x00\x00": "UTF-32",
+    b"\x00\x00\xfe\xff": "UTF-32",
+    b"\xff\xfe": "UTF-16",
+    b"\xfe\xff": "UTF-16",
+}
+_UTF8_NAMES = {"utf-8", "utf8", "us-ascii", "ascii"}
+_UTF8_MARK = b"\xef\xbb\xbf"
+
+# What may stand before a DOCTYPE: blanks, comments and processing instructions. The XML declaration is one of the
+# latter as far as this pattern cares. The possessive quantifiers keep it linear on whatever it is given.
+_PROLOG = re.compile(rb"(?:[ \t\r\n]++|<!--.*?-->|<\?.*?\?>)*+", re.DOTALL)
+_DECLARED_ENCODING = re.compile(rb"<\?xml\s[^>]{0,200}?encoding\s*=\s*[\"']([^\"'>]{1,40})[\"']")
+
+_ENCODING_HINT = "Save the file as UTF-8."
+_EXPANSION_HINT = "Expand the file first: xacro file.xacro > file.urdf"
+
+
+def read_tree(data: bytes, path: str) -> etree._Element:
+    """Parse untrusted XML with entities, network, DTD and huge trees off.
+
+    Args:
+        data: The whole file.
+        path: How messages name the file.
+
+    Returns:
+        The root element; comments and processing instructions are gone.
+
+    Raises:
+        UrdfError: The bytes are too many, not UTF-8, not well-formed, declare a DOCTYPE, or exceed a bound of
+            `ReadLimits`.
+    """
+    _check_size(data, path)
+    _check_encoding(data, path)
+    _check_prolog(data, path)
+    _check_amount(data, path)
+    root = _parse(data, path)
+    if root.getroottree().docinfo.internalDTD is not None:  # a second lock behind _check_prolog
+        raise _doctype_error(path, None)
+    _check_nesting(root, path)
+    return root
+
+
+def _check_size(data: bytes, path: str) -> None:
+    if len(data) > LIMITS.file_bytes:
+        raise UrdfError(path, None, f"The file has {len(data)} bytes; at most {LIMITS.file_bytes} are read.")
+    if not data.strip():
+        raise UrdfError(path, None, "The file is empty.")
+
+
+def _check_encoding(data: bytes, path: str) -> None:
+    for mark, name in _BYTE_ORDER_MARKS.items():
+        if data.startswith(mark):
+            raise UrdfError(path, 1, f"The file is encoded in {name}, not in UTF-8.", _ENCODING_HINT)
+    nul = data.find(b"\x00")
+    if nul >= 0:
+        reason = "The file contains a NUL byte, so it is not UTF-8 text."
+        raise UrdfError(path, _line_at(data, nul), reason, _ENCODING_HINT)
+    declared = _DECLARED_ENCODING.match(data.removeprefix(_UTF8_MARK)[:512])
+    if declared and declared[1].decode("ascii", "replace").lower() not in _UTF8_NAMES:
+        name = declared[1].decode("ascii", "replace")
+        raise UrdfError(path, 1, f"The file declares the encoding {name!r}; only UTF-8 is read.", _ENCODING_HINT)
+
+
+def _check_prolog(data: bytes, path: str) -> None:
+    # XML allows a DOCTYPE only here; anywhere else the parser itself reports it as not well-formed.
+    start = len(_UTF8_MARK) if data.startswith(_UTF8_MARK) else 0
+    prolog = _PROLOG.match(data, start)
+    end = prolog.end() if prolog else start
+    if data[end : end + 9].upper() == b"<!DOCTYPE":
+        raise _doctype_error(path, _line_at(data, end))
+
+
+def _doctype_error(path: str, line: int | None) -> UrdfError:
+    hint = "Remove the DOCTYPE and write out its entities; a URDF needs neither."
+    return UrdfError(path, line, "The file declares a DOCTYPE, through which XML can reach other files.", hint)
+
+
+def _check_amount(data: bytes, path: str) -> None:
+    for sign, most, what in ((b"<", LIMITS.markup, "tags"), (b"=", LIMITS.attributes, "attributes")):
+        if data.count(sign) > most:
+            raise UrdfError(path, None, f"The file holds more than {most} {what}.")
+    if data.count(b"\n") > LIMITS.lines:
+        raise UrdfError(path, None, f"The file has more than {LIMITS.lines} lines.")
+
+
+def _parse(data: bytes, path: str) -> etree._Element:
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        dtd_validation=False,
+        attribute_defaults=False,
+        huge_tree=False,
+        recover=False,
+        remove_comments=True,
+        remove_pis=True,
+        encoding="utf-8",
+    )
+    try:
+        return etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        raise _syntax_error(error, path) from None
+
+
+def _syntax_error(error: etree.XMLSyntaxError, path: str) -> UrdfError:
+    line = error.lineno or None
+    # libxml2 ends its messages with the position, which the error carries already.
+    said = re.sub(r"\s*,?\s*line \d+, column \d+\s*$", "", error.msg or "").strip()
+    said = re.sub(r"\s+", " ", "".join(c if c.isprintable() else " " for c in said))[:200].rstrip(".")
+    if "Excessive depth" in said:
+        return UrdfError(path, line, f"Elements are nested deeper than {LIMITS.depth} levels.")
+    if "XML_PARSE_HUGE" in said or "too long" in said.lower():
+        return UrdfError(path, line, "A name, value or text is longer than the XML parser reads.")
+    if "UTF-8" in said or "encoding" in said:
+        return UrdfError(path, line, "The file is not UTF-8 text.", _ENCODING_HINT)
+    if said.startswith("Namespace prefix xacro"):
+        return UrdfError(path, line, "The file is an unexpanded xacro without its namespace.", _EXPANSION_HINT)
+    return UrdfError(path, line, f"The file is not well-formed XML: {said}.")
+
+
+def _check_nesting(root: etree._Element, path: str) -> None:
+    depth = 0
+    for event, element in etree.iterwalk(root, events=("start", "end")):
+        if event == "end":
+            depth -= 1
+            continue
+        depth += 1
+        if depth > LIMITS.depth:
+            raise UrdfError(path, element.sourceline, f"Elements are nested deeper than {LIMITS.depth} levels.")
+        if len(element.attrib) > LIMITS.attributes_per_element:
+            reason = f"An element has more than {LIMITS.attributes_per_element} attributes."
+            raise UrdfError(path, element.sourceline, reason)
+        for name, value in element.attrib.items():
+            if len(value) > LIMITS.value_characters:
+                reason = f"The attribute {str(name)[:40]!r} has more than {LIMITS.value_characters} characters."
+                raise UrdfError(path, element.sourceline, reason)
+
+
+def _line_at(data: bytes, offset: int) -> int:
+    return data.count(b"\n", 0, offset) + 1
