@@ -1,0 +1,103 @@
+"""Pages on their way out: into a file, or into a notebook."""
+
+from __future__ import annotations
+
+import html
+import os
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nao_kin.errors import InvalidInputError
+from nao_kin.view.page import page
+from nao_kin.view.scene import robot_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from nao_kin.robot import Robot
+
+__all__ = ["InlinePage", "export_html", "show"]
+
+
+@dataclass(frozen=True, slots=True)
+class InlinePage:
+    """A page to be shown within another one: Jupyter displays it, and it stays in a notebook saved as HTML.
+
+    Attributes:
+        html: The page.
+        title: What a screen reader calls the frame.
+        height: Height of the frame in CSS pixels; its width is all there is.
+    """
+
+    html: str
+    title: str
+    height: int
+
+    def __repr__(self) -> str:
+        return f"InlinePage({self.title!r}, {len(self.html)} characters)"
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe title="{html.escape(self.title)}" sandbox="allow-scripts" '
+            f'style="width:100%;height:{self.height}px;border:0;border-radius:8px" '
+            f'srcdoc="{html.escape(self.html)}"></iframe>'
+        )
+
+
+def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str, float] | None = None) -> Path:
+    """Write a page that shows a robot in one posture: one file, no server, no network.
+
+    The page is complete before the file is touched: a failure leaves what was there. The same robot and posture give
+    the same bytes.
+
+    Args:
+        path: Where to write; an existing file is replaced.
+        robot: The robot.
+        posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
+
+    Returns:
+        The path written to.
+
+    Raises:
+        UnknownNameError: The posture names a joint the robot does not have.
+        InvalidInputError: A value of the posture is not a finite number, or `path` is a directory.
+        OSError: The file cannot be written.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise InvalidInputError("path", "the name of a file to write", f"the directory {target}")
+    _replace(target, page(robot_scene(robot, posture)).encode("utf-8"))
+    return target
+
+
+def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int = 480) -> InlinePage:
+    """The page of `export_html`, inline in a Jupyter notebook.
+
+    Args:
+        robot: The robot.
+        posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
+        height: Height of the frame in CSS pixels.
+
+    Raises:
+        UnknownNameError: The posture names a joint the robot does not have.
+        InvalidInputError: A value of the posture is not a finite number, or the height is not positive.
+    """
+    if height <= 0:
+        raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
+    scene = robot_scene(robot, posture)
+    return InlinePage(page(scene), scene.title, int(height))
+
+
+def _replace(target: Path, content: bytes) -> None:
+    """Put `content` in place of a file in one step, through a neighbour in the same directory."""
+    real = Path(os.path.realpath(target))  # through a link, so that the link stays one
+    neighbour = real.with_name(f".{real.name[:100]}.{secrets.token_hex(4)}.tmp")
+    try:
+        with neighbour.open("xb") as file:
+            file.write(content)
+        neighbour.replace(real)
+    except BaseException:
+        neighbour.unlink(missing_ok=True)
+        raise

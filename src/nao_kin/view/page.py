@@ -1,0 +1,146 @@
+"""A scene as one HTML page that needs no server, no network and no installation.
+
+The page carries meshcat's viewer, the recorded commands and its own small script. Its Content-Security-Policy allows
+exactly these two scripts, by their hashes, and no connection at all.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import importlib.metadata
+import importlib.resources
+import json
+import math
+import re
+import zlib
+from typing import TYPE_CHECKING
+
+from nao_kin.view.record import recorded
+
+if TYPE_CHECKING:
+    from nao_kin.view.scene import JointValue, Scene
+
+__all__ = ["page"]
+
+MINUS = "\N{MINUS SIGN}"
+
+
+def page(scene: Scene) -> str:
+    """The page, complete. The same scene gives the same text, byte for byte.
+
+    Text of the scene (names, notes) occurs in it only HTML-escaped.
+    """
+    viewer, script = _viewer_script(), _script_text(_resource("page.js"))
+    policy = (
+        f"default-src 'none'; script-src {_source_hash(viewer)} {_source_hash(script)}; "
+        "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+    return _filled(
+        _resource("page.html"),
+        {
+            "policy": policy,
+            "title": html.escape(scene.title),
+            "version": html.escape(_version()),
+            "style": _resource("page.css"),
+            "source": _source(scene),
+            "joints": _joint_panel(scene.joints),
+            "notes": _note_panel(scene.notes),
+            "data": _json_text(_packed(recorded(scene))),
+            "viewer": viewer,
+            "script": script,
+        },
+    )
+
+
+def _filled(template: str, values: dict[str, str]) -> str:
+    """The template with every `{{name}}` replaced in one pass, so that a value is never searched for names."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], template)
+
+
+def _source(scene: Scene) -> str:
+    if not scene.source:
+        return ""
+    digest = html.escape(scene.sha256)
+    short = f' <code title="sha256 {digest}">{digest[:12]}</code>' if digest else ""
+    return f'<p class="source"><span>{html.escape(scene.source)}</span>{short}</p>'
+
+
+def _joint_panel(joints: tuple[JointValue, ...]) -> str:
+    if not joints:
+        return ""
+    rows = "\n".join(_joint_row(joint) for joint in joints)
+    return (
+        f'<details id="joints"><summary>Joint values <span class="count">{len(joints)}</span></summary>\n'
+        '<div class="scroll"><table><thead><tr><th scope="col">joint</th><th scope="col">rad</th>'
+        f'<th scope="col">deg</th></tr></thead><tbody>\n{rows}\n</tbody></table></div></details>'
+    )
+
+
+def _joint_row(joint: JointValue) -> str:
+    if joint.kind == "prismatic":
+        first, second = f"{_number(joint.value, 4)} m", f"{_number(1e3 * joint.value, 1)} mm"
+    else:
+        first, second = _number(joint.value, 4), f"{_number(math.degrees(joint.value), 2)}°"
+    return f'<tr><th scope="row">{html.escape(joint.name)}</th><td>{first}</td><td>{second}</td></tr>'
+
+
+def _number(value: float, digits: int) -> str:
+    text = f"{value:.{digits}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")  # no "−0.0000"
+    return text.replace("-", MINUS)
+
+
+def _note_panel(notes: tuple[str, ...]) -> str:
+    if not notes:
+        return ""
+    items = "".join(f"<li>{html.escape(note)}</li>" for note in notes)
+    return (
+        f'<details id="notes"><summary>Not shown <span class="count">{len(notes)}</span></summary>\n'
+        f'<div class="scroll"><ul>{items}</ul></div></details>'
+    )
+
+
+def _packed(commands: list[bytes]) -> dict[str, object]:
+    """The commands in a form the page can take apart: text, since a page holds no bytes, of about a third the size."""
+    deflated = base64.b64encode(zlib.compress(b"".join(commands), 6)).decode("ascii")
+    return {"lengths": [len(command) for command in commands], "deflated": deflated}
+
+
+def _json_text(value: object) -> str:
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _viewer_script() -> str:
+    """The viewer that meshcat bundles, behind the licences it comes under."""
+    dist = importlib.resources.files("meshcat") / "viewer"
+    licence = (dist / "LICENSE").read_text(encoding="utf-8").replace("*/", "* /").strip()
+    notices = (dist / "dist" / "main.min.js.LICENSE.txt").read_text(encoding="utf-8").strip()
+    script = (dist / "dist" / "main.min.js").read_text(encoding="utf-8").strip()
+    return _script_text(f"/* meshcat\n\n{licence}\n*/\n{notices}\n{script}")
+
+
+def _script_text(script: str) -> str:
+    """Script text in a form that neither ends its element nor starts a comment; both only occur within literals."""
+    script = script.replace("\r\n", "\n").replace("\r", "\n")  # browsers read, and hash, the text this way
+    script = re.sub(r"</(?=script)", r"<\\/", script, flags=re.IGNORECASE).replace("<!--", "<\\!--")
+    return f"\n{script}\n"
+
+
+def _source_hash(script: str) -> str:
+    digest = hashlib.sha256(script.encode("utf-8")).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def _resource(name: str) -> str:
+    return (importlib.resources.files("nao_kin.view") / name).read_text(encoding="utf-8")
+
+
+def _version() -> str:
+    try:
+        return importlib.metadata.version("nao_kin")
+    except importlib.metadata.PackageNotFoundError:  # run from a source tree
+        return "(not installed)"
