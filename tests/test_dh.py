@@ -73,7 +73,10 @@ def test_document_chains_survive_their_file(tmp_path: Path, name: str) -> None:
 
 def test_units_are_converted_at_the_edge() -> None:
     table = nk.DHChain.from_table(
-        [(105, -90, 55.95, 30), {"a": 0, "alpha": 0, "d": 10, "theta": 0, "kind": "prismatic", "lower": -50, "upper": 50}],
+        [
+            (105, -90, 55.95, 30),
+            {"a": 0, "alpha": 0, "d": 10, "theta": 0, "kind": "prismatic", "lower": -50, "upper": 50},
+        ],
         convention="modified",
         lengths="mm",
         angles="deg",

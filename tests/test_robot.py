@@ -16,9 +16,9 @@ from nao_kin.chain import (
     neutral,
     outside_limits,
     random_configurations,
-    reach_ball,
 )
 from nao_kin.errors import InvalidInputError, MissingExtraError, NoPathError, UnknownNameError, UrdfError
+from nao_kin.reach import reach_shell
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 
 MIMIC = """<robot name="m"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
@@ -267,18 +267,22 @@ def test_a_chain_may_be_shared_between_threads(rng: np.random.Generator) -> None
 def test_robots_and_chains_survive_pickling() -> None:
     chain = pickle.loads(pickle.dumps(robot("nao_v50_h25").chain("left_arm")))  # noqa: S301 - our own bytes
     np.testing.assert_array_equal(
-        chain.pose(np.full(5, 0.1)).homogeneous, robot("nao_v50_h25").chain("left_arm").pose(np.full(5, 0.1)).homogeneous
+        chain.pose(np.full(5, 0.1)).homogeneous,
+        robot("nao_v50_h25").chain("left_arm").pose(np.full(5, 0.1)).homogeneous,
     )
 
 
 @pytest.mark.parametrize("name", BUNDLED)
-def test_the_tip_never_leaves_the_reach_ball(name: str, rng: np.random.Generator) -> None:
+def test_the_tip_never_leaves_the_reach_shell(name: str, rng: np.random.Generator) -> None:
     model = robot(name)
     for chain_name in model.chain_frames:
         chain = model.chain(chain_name)
-        centre, radius = reach_ball(chain)
+        shell = reach_shell(chain)
         positions = chain.poses(rng.uniform(-np.pi, np.pi, (500, len(chain.joints))))[:, :3, 3]
-        assert np.linalg.norm(positions - centre, axis=1).max() <= radius * (1 + 1e-12)
+        distances = np.linalg.norm(positions - shell.centre, axis=1)
+        assert distances.max() <= shell.outer * (1 + 1e-12)
+        assert distances.min() >= shell.inner * (1 - 1e-12)
+        assert max(shell.misses_by(p) for p in positions) == 0.0
 
 
 def test_prismatic_travel_counts_as_reach(tmp_path: Path) -> None:
@@ -288,8 +292,17 @@ def test_prismatic_travel_counts_as_reach(tmp_path: Path) -> None:
         '<child link="b"/><axis xyz="1 0 0"/><limit lower="-0.2" upper="0.7" effort="1" velocity="1"/></joint></robot>'
     )
     chain = nk.load(path).chain("a", "b")
-    centre, radius = reach_ball(chain)
-    assert np.linalg.norm(chain.pose([0.7]).translation - centre) <= radius == pytest.approx(0.7)
+    shell = reach_shell(chain)
+    assert np.linalg.norm(chain.pose([0.7]).translation - shell.centre) <= shell.outer == pytest.approx(0.7)
+
+
+def test_an_arm_that_cannot_fold_has_a_hole_in_its_reach() -> None:
+    """Rods of 0.3 and 0.1 m leave the first 0.2 m around the shoulder free."""
+    table = nk.DHChain.from_table([(0.3, 0, 0, 0), (0.1, 0, 0, 0)], convention="standard")
+    shell = reach_shell(table)
+    assert (shell.inner, shell.outer) == (pytest.approx(0.2), pytest.approx(0.4))
+    assert shell.misses_by(np.zeros(3)) == pytest.approx(0.2)
+    assert nk.solve(table, [0.1, 0.0, 0.0]).status is nk.Status.OUT_OF_REACH
 
 
 def test_reprs_say_what_it_is() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, runtime_checkable
@@ -32,7 +31,6 @@ __all__ = [
     "outside_limits",
     "poses_by_loop",
     "random_configurations",
-    "reach_ball",
     "stacked_limits",
 ]
 
@@ -255,32 +253,6 @@ def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -
         angular = 0.5 * np.array([W[2, 1] - W[1, 2], W[0, 2] - W[2, 0], W[1, 0] - W[0, 1]])
         columns.append(np.concatenate([linear, angular]))
     return np.array(columns).T
-
-
-def reach_ball(chain: Chain) -> tuple[Floats, float]:
-    """A ball (centre (3,), radius) in the base frame [m] that the tip never leaves; proven, not tight.
-
-    A point on a joint's axis is fixed in the links on both sides of it, so the distances between such points of
-    consecutive joints are constant and their sum bounds the distance from the first one, which the base carries, to
-    the tip. A prismatic joint adds its largest travel. Without a bound (a prismatic joint without limits, or coupled
-    joints, whose column is no single axis) the radius is infinite.
-    """
-    zero = np.zeros(len(chain.joints))
-    tip, J = chain.pose(zero).translation, chain.jacobian(zero)
-    points: list[Floats] = []
-    travel = 0.0
-    for joint, v, w in zip(chain.joints, J[:3].T, J[3:].T, strict=True):
-        if joint.kind == "prismatic":
-            travel += max(abs(joint.lower), abs(joint.upper))
-            continue
-        if abs(np.linalg.norm(w) - 1.0) > 1e-9 or abs(v @ w) > 1e-9:
-            return np.zeros(3), math.inf
-        on_axis = tip + np.cross(w, v)
-        nearest = on_axis + w * (w @ (points[-1] - on_axis)) if points else on_axis - w * (w @ on_axis)
-        points.append(nearest)
-    points.append(tip)
-    rigid = sum(float(np.linalg.norm(b - a)) for a, b in itertools.pairwise(points))
-    return points[0], rigid + travel
 
 
 def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:

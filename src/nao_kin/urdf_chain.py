@@ -166,7 +166,8 @@ class UrdfChain:
         if frame not in _REFERENCE:
             raise InvalidInputError("frame", "'base' or 'tip'", repr(frame))
         values = self._joint_values(configuration(self, q))
-        J: Floats = pin.computeFrameJacobian(self._model, self._workspace.data, values, self._tip_id, _REFERENCE[frame])
+        J = pin.computeFrameJacobian(self._model, self._workspace.data, values, self._tip_id, _REFERENCE[frame])
+        J = np.ascontiguousarray(J).reshape(6, -1)  # of a single joint, Pinocchio hands over a vector
         return J if self._spread is None else J @ self._spread
 
     def link_poses(self, q: ArrayLike) -> Floats:

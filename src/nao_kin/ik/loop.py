@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.chain import into_limits, random_configurations, reach_ball
+from nao_kin.chain import into_limits, random_configurations
 from nao_kin.ik.problem import Problem, Run, Status, Trace
+from nao_kin.reach import reach_shell
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,7 +49,8 @@ def run_reference(
     """
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
-    misses_by = _proven_miss(problem)
+    misses_by = reach_shell(problem.chain).misses_by(problem.target.T_base_target.translation)
+    misses_by = misses_by if misses_by > problem.tolerances.position else 0.0
     search = _Search(problem, rule, budget, keep_trace)
     ended = search.descend(start)
     while ended is not Status.SOLVED and not misses_by and search.starts <= budget.restarts:
@@ -130,12 +132,3 @@ def _ratio(error: float, tolerance: float) -> float:
     if tolerance > 0.0:
         return error / tolerance
     return 0.0 if error == 0.0 else math.inf
-
-
-def _proven_miss(problem: Problem) -> float:
-    """A distance by which the target certainly misses the reach [m]; 0 where that is not proven."""
-    centre, radius = reach_ball(problem.chain)
-    distance = float(np.linalg.norm(problem.target.T_base_target.translation - centre))
-    # The ball's radius is itself a rounded sum, and within the tolerance a target just outside still counts as met.
-    beyond = distance - radius * (1.0 + 1e-12) - problem.tolerances.position
-    return max(0.0, beyond)

@@ -25,7 +25,7 @@ class Status(enum.Enum):
     SOLVED = "The target is reached: the returned joints were measured again and are within tolerance and limits."
     STALLED = "No start came closer any more: a local minimum, a limit, or a target out of reach."
     BUDGET_SPENT = "The iteration budget ran out while the error was still falling."
-    OUT_OF_REACH = "The target lies farther from the chain than its links are long."
+    OUT_OF_REACH = "The target lies where the lengths of the links keep the tip from ever being."
     OUTSIDE_LIMITS = "The tip is at the target, but a joint is outside its range."
     NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
 
