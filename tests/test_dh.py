@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
@@ -16,6 +16,9 @@ import nao_kin as nk
 from nao_kin.dh_row import dh_matrix
 from nao_kin.documents.chains import DOCUMENT_CHAINS
 from nao_kin.errors import InvalidInputError, TableFileError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 number = st.floats(-10, 10, allow_subnormal=False)
 rows = st.builds(

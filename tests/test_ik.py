@@ -90,7 +90,7 @@ def test_a_target_at_the_start_needs_no_iteration() -> None:
     np.testing.assert_array_equal(result.q, q0)
 
 
-@pytest.mark.parametrize("axis", np.eye(3).tolist() + [[0.6, 0.0, 0.8]])
+@pytest.mark.parametrize("axis", [*np.eye(3).tolist(), [0.6, 0.0, 0.8]])
 def test_a_rotation_by_exactly_pi_is_reached(axis: list[float]) -> None:
     arm = robot("jaco2").chain("arm")
     q0 = np.radians([180, 270, 90, 180, 180, 0]) + 0.3

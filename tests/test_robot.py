@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 import threading
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,6 +20,9 @@ from nao_kin.chain import (
 from nao_kin.errors import InvalidInputError, MissingExtraError, NoPathError, UnknownNameError, UrdfError
 from nao_kin.reach import reach_shell
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MIMIC = """<robot name="m"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
 <joint name="z_lead" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
@@ -60,7 +63,7 @@ def test_every_optional_robot_loads_with_all_its_chains(name: str) -> None:
 def test_nao_means_v5_with_hands() -> None:
     assert nk.load("nao").name == "nao_v50_h25"
     assert nk.robot_names()[0] == "nao"
-    assert [j for j in nk.load("nao").chain("left_arm").joint_names] == [
+    assert list(nk.load("nao").chain("left_arm").joint_names) == [
         "LShoulderPitch",
         "LShoulderRoll",
         "LElbowYaw",

@@ -79,7 +79,7 @@ def nearest_rotation(almost: ArrayLike) -> Floats:
     """
     M = matrix(almost, "rotation", (3, 3))
     U, stretch, Vt = np.linalg.svd(M)
-    if stretch[-1] < 1e-6 * stretch[0] or np.linalg.det(M) < 0.0:
+    if stretch[-1] <= 1e-6 * stretch[0] or np.linalg.det(M) < 0.0:
         raise InvalidInputError("rotation", "a matrix near a rotation", f"determinant {np.linalg.det(M):.3g}")
     return np.ascontiguousarray(U @ Vt)
 

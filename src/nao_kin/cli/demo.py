@@ -17,10 +17,10 @@ __all__ = ["demo"]
 
 # A greeting: the right hand up and open, the head turned towards it.
 WAVE = {
-    "RShoulderPitch": -0.9,
-    "RShoulderRoll": -0.45,
-    "RElbowYaw": 0.6,
-    "RElbowRoll": 1.1,
+    "RShoulderPitch": -1.2,
+    "RShoulderRoll": -1.1,
+    "RElbowYaw": 0.8,
+    "RElbowRoll": 0.8,
     "RHand": 0.8,
     "LShoulderPitch": 1.3,
     "LShoulderRoll": 0.15,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -35,7 +36,8 @@ def report(*parts: Table | str) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    console = Console(highlight=False)
+    # rich keeps bold and dim under NO_COLOR; people set it for plain text.
+    console = Console(highlight=False, color_system=None if os.environ.get("NO_COLOR") else "auto")
     for part in parts:
         console.print(Text(part) if isinstance(part, str) else part)
 

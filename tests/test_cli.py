@@ -1,0 +1,190 @@
+"""The command line as a person or a script meets it: a real process, its output, its exit status."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import nao_kin as nk
+from nao_kin.se3 import rpy
+
+
+def run(*arguments: object, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    kept = {key: value for key, value in os.environ.items() if key not in ("FORCE_COLOR", "COLUMNS")}
+    return subprocess.run(
+        [sys.executable, "-m", "nao_kin", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        cwd=cwd,
+        env=kept | environment,
+        check=False,
+    )
+
+
+def ok(*arguments: object, status: int = 0, **environment: str) -> str:
+    done = run(*arguments, **environment)
+    assert done.returncode == status, done.stdout + done.stderr
+    if "json" not in arguments:
+        assert max((len(line) for line in done.stdout.splitlines()), default=0) <= 80
+    return done.stdout
+
+
+def test_fk_prints_the_check_pose_of_model_and_document() -> None:
+    text = ok("fk", "jaco2", "--tip", "end_effector", "--deg", 180, 270, 90, 180, 180, 0)
+    model, document = (line.split() for line in text.splitlines() if line.startswith(("jaco2 arm  ", "practicum")))
+    assert model[2:5] == ["0.4100", "0.2595", "0.0841"]
+    assert document[1:4] == ["0.4100", "0.2595", "0.0840"]
+
+
+def test_fk_as_json_takes_negative_numbers_and_gives_the_jacobian() -> None:
+    q = [-0.3, 0.2, -0.5, -0.8, 0.4]
+    data = json.loads(ok("fk", "nao", "--chain", "left_arm", "--jacobian", "--format", "json", *q))
+    arm = nk.load("nao").chain("left_arm")
+    assert data["position"] == arm.pose(q).translation.tolist()
+    assert data["jacobian"] == arm.jacobian(q).tolist()
+    assert data["q"]["LElbowRoll"] == -0.8
+
+
+def test_fk_of_a_table_a_spec_and_a_path(tmp_path: Path) -> None:
+    assert "kofinas_left_arm" in ok("fk", "kofinas_left_arm", 0, 0, 0, 0, 0)
+    assert "l_sole" in ok("fk", "nao:l_sole:r_gripper")
+    assert "LElbowRoll" in ok("fk", "nao:left_arm")
+    table = tmp_path / "mine.toml"
+    table.write_text(nk.document_chain("practicum_jaco2").to_toml())
+    assert "practicum_jaco2" in ok("fk", table)
+    urdf = tmp_path / "mine.urdf"
+    urdf.write_text(Path(nk.load("jaco2").document.path).read_text())
+    assert "end_effector" in ok("fk", urdf, "--tip", "end_effector")
+
+
+def test_ik_reaches_and_says_where_it_does_not(tmp_path: Path) -> None:
+    text = ok("ik", "nao", "--chain", "left_arm", "--xyz", 0.15, 0.15, "0.1")
+    assert "The target is reached" in text
+    page = tmp_path / "page.html"
+    data = json.loads(
+        ok(
+            "ik",
+            "jaco2",
+            "--posture",
+            "joint_1=20",
+            "--posture",
+            "joint_2=150",
+            "--deg",
+            "--html",
+            page,
+            "--format",
+            "json",
+        )
+    )
+    assert data["solved"] is True
+    assert data["position_error"] < 1e-6
+    assert page.stat().st_size > 500_000
+    far = json.loads(ok("ik", "nao", "--chain", "left_arm", "--xyz", 5, 0, 0, "--format", "json", status=1))
+    assert far["status"] == "OUT_OF_REACH"
+    pose = nk.load("jaco2").chain("arm").pose([-1.7, 2.9, 0.5, 1.5, -1.3, -0.5])
+    degrees = [math.degrees(angle) for angle in rpy(pose)]
+    assert "is reached" in ok("ik", "jaco2", "--xyz", *pose.translation, "--rpy", *degrees, "--deg")
+
+
+def test_compare_exits_with_its_verdict(tmp_path: Path) -> None:
+    assert "yes" in ok("compare", "kofinas_left_leg")
+    text = ok("compare", "thesis_left_arm", "--read-as", "modified", status=1)
+    assert "LShoulderRoll (18.47 mm" in text
+    data = json.loads(ok("compare", "practicum_jaco2", "--format", "json", status=1))
+    assert data["first_departure"]["joint"] == "joint_5"
+    table = tmp_path / "mine.toml"
+    table.write_text(nk.document_chain("kofinas_left_arm").to_toml())
+    assert "yes" in ok("compare", table, "nao:left_arm")
+    assert "yes" in ok("compare", "nao:left_arm", "nao_v60_h25:left_arm")
+
+
+def test_robots_lists_what_loads() -> None:
+    text = ok("robots")
+    assert "nao_v50_h25 = nao" in text
+    listed = json.loads(ok("robots", "--format", "json"))
+    assert {row["name"] for row in listed} == set(nk.robot_names()) - {"nao"}
+
+
+def test_html_writes_a_page(tmp_path: Path) -> None:
+    page = tmp_path / "nao.html"
+    done = run("html", "nao", "--output", page, "--posture", "LHand=0.5")
+    assert done.returncode == 0
+    assert done.stdout == ""
+    assert str(page) in done.stderr
+    assert page.read_text(encoding="utf-8").lower().startswith("<!doctype html>")
+
+
+def test_demo_does_the_main_job(tmp_path: Path) -> None:
+    done = run("demo", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert max(len(line) for line in done.stdout.splitlines()) <= 80
+    assert done.stderr == ""
+    for expected in ("thesis_right_arm", "agrees", "joint_5", "Where to look next", "The target is reached"):
+        assert expected in done.stdout
+    assert (tmp_path / "demo" / "nao.html").is_file()
+    assert (tmp_path / "demo" / "jaco2.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("fk", "jako2"), "Did you mean 'jaco2'"),
+        (("fk", "nao", "--chain", "larm"), "Did you mean 'left_arm'"),
+        (("fk", "nao", "--tip", "l_grippr"), "Did you mean 'l_gripper'"),
+        (("fk", "jaco2", 1, 2), "6 numbers (joint_1"),
+        (("fk", "jaco2", 1, 2, 3, "x", 5, 6), "'x' is not a number"),
+        (("fk", "jaco2", "nan", 2, 3, 4, 5, 6), "finite"),
+        (("fk", "jaco2", "--dge", 1), "No such option: --dge"),
+        (("fk", "no/such.urdf"), "no/such.urdf: There is no such file"),
+        (("fk", "nao", "--base", "torso"), "--base needs --tip"),
+        (("fk", "nao", "--chain", "head", "--tip", "Head"), "--chain already says"),
+        (("fk", "thesis_left_arm", "--tip", "x"), "is a table"),
+        (("fk", "nao:a:b:c"), "ROBOT:BASE:TIP"),
+        (("ik", "nao"), "either --xyz"),
+        (("ik", "nao", "--xyz", 1, 2), "requires 3"),
+        (("ik", "nao", "--posture", "LElbowRoll"), "NAME=NUMBER"),
+        (("ik", "nao", "--posture", "LElbowRol=1"), "Did you mean 'LElbowRoll'"),
+        (("ik", "nao", "--xyz", 0, 0, 0, "--method", "ml"), "There is no method 'ml'"),
+        (("compare", "thesis_left_arm", "nao:left_arm"), "5 joints as"),
+        (("compare", "nao:left_arm"), "say what to hold"),
+        (("compare", "nao:left_arm", "nao:left_arm", "--read-as", "standard"), "--read-as is for tables"),
+        (("compare", "nothing.toml", "nao:left_arm"), "nothing.toml: no such file"),
+        (("html", "nao", "--output", "/"), "a file to write"),
+        (("nosuch",), "No such command"),
+    ],
+)
+def test_wrong_usage_and_unreadable_input_exit_with_2_and_a_reason(arguments: tuple[object, ...], said: str) -> None:
+    done = run(*arguments)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert said in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+
+
+def test_a_hostile_file_exits_with_2_path_line_and_reason(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.urdf"
+    path.write_text('<?xml version="1.0"?>\n<!DOCTYPE r [<!ENTITY a "x">]>\n<robot name="r"/>')
+    done = run("fk", path, "--tip", "x")
+    assert done.returncode == 2
+    assert f"{path}:2:" in done.stderr
+    assert "DOCTYPE" in done.stderr
+
+
+def test_version_help_and_no_colour() -> None:
+    assert ok("--version").strip() == nk.__version__
+    for command in ("", "fk", "ik", "compare", "html", "demo", "robots", "bench"):
+        assert "Usage" in ok(*filter(None, [command]), "--help")
+    assert "\x1b[" not in ok("compare", "kofinas_head", NO_COLOR="1", FORCE_COLOR="1")
+
+
+def test_a_reader_that_leaves_early_is_no_error() -> None:
+    command = f"{sys.executable} -m nao_kin robots | head -1"
+    done = subprocess.run(["/bin/sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.stderr == ""
