@@ -9,11 +9,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import yourdfpy
+from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 
 from nao_kin.chain import finite_difference_jacobian, random_configurations
 from nao_kin.documents import kofinas
 from nao_kin.documents.chains import DOCUMENT_CHAINS
-from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 
 EXTRA_PATHS = {
     "nao_v50_h25": [("l_sole", "r_gripper"), ("l_sole", "r_sole"), ("r_sole", "CameraTop_frame"), ("LArm", "RArm")],
@@ -82,7 +82,7 @@ def test_whole_robot_equals_yourdfpy_on_a_thousand_postures(name: str, rng: np.r
         build_collision_scene_graph=False,
     )
     chains = chains_of(name)
-    leaders = [joint for joint in other.actuated_joint_names]
+    leaders = list(other.actuated_joint_names)
     for _ in range(1000):
         values = dict(zip(leaders, rng.uniform(-3.0, 3.0, len(leaders)), strict=True))
         other.update_cfg(values)
