@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     import pinocchio as pin
     from numpy.typing import ArrayLike
 
+    from nao_kin.kernels.path import JointPath
+
 __all__ = [
     "Chain",
     "ChainJoint",
@@ -124,6 +126,10 @@ class Chain(Protocol):
     @property
     def limit_rules(self) -> tuple[LimitRule, ...]:
         """Coupled limits both of whose joints are in the chain."""
+
+    @property
+    def joint_path(self) -> JointPath:
+        """The flat form that compiled code runs on."""
 
     def pose(self, q: ArrayLike) -> pin.SE3:
         """T_base_tip at q."""

@@ -38,6 +38,7 @@ from nao_kin.dh_row import (
     known_convention,
 )
 from nao_kin.errors import InvalidInputError
+from nao_kin.kernels.path import JointPath, PathJoint, joint_path
 from nao_kin.se3 import PoseLike, as_pose
 from nao_kin.table import Column, Table
 
@@ -212,6 +213,19 @@ class DHChain:
             return J
         R = T_base_tip[:3, :3].T
         return np.concatenate([R @ J[:3], R @ J[3:]])
+
+    @cached_property
+    def joint_path(self) -> JointPath:
+        """The flat form that compiled code runs on."""
+        before, joints = self.base.homogeneous, []
+        for column, row in enumerate(self.rows):
+            at_zero = dh_matrix(row, 0.0, self.convention)
+            # z of the frame before a standard row and z of a modified row's own frame: both turn the row's frame.
+            placement, after = (np.eye(4), at_zero) if self.convention == "standard" else (at_zero, np.eye(4))
+            axis = np.array([0.0, 0.0, 1.0])
+            joints.append(PathJoint(before @ placement, axis, row.kind == "prismatic", column, float(row.sign)))
+            before = after
+        return joint_path(joints, before @ self.tool.homogeneous, self.lower, self.upper)
 
     def poses(self, Q: ArrayLike) -> Floats:
         """T_base_tip (N, 4, 4) for configurations (N, n)."""

@@ -21,7 +21,8 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
 from nao_kin.table import Column, Table
 from nao_kin.urdf import UrdfDocument, read_urdf
-from nao_kin.urdf_chain import Coupling, UrdfChain, joint_range
+from nao_kin.urdf_chain import UrdfChain
+from nao_kin.urdf_path import Coupling, joint_range
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,10 +6,9 @@ inside this module: outside, a chain has `q`, one plain number a joint.
 
 from __future__ import annotations
 
-import math
 import threading
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
@@ -24,7 +23,8 @@ from nao_kin.chain import (
     stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
-from nao_kin.se3 import from_xyz_rpy
+from nao_kin.kernels.path import JointPath, joint_path
+from nao_kin.urdf_path import Step, chain_joints, walk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,31 +33,8 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.robot import Robot
-    from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "UrdfChain", "joint_range"]
-
-
-@dataclass(frozen=True, slots=True)
-class Coupling:
-    """A joint without a motor of its own: value = multiplier · leader + offset [rad or m]."""
-
-    follower: str
-    leader: str
-    multiplier: float
-    offset: float
-
-
-@dataclass(frozen=True, slots=True)
-class _PathJoint:
-    """A moving joint on a chain's path: its column, and value = multiplier · q[column] + offset."""
-
-    joint: UrdfJoint
-    link_behind: str
-    column: int
-    multiplier: float
-    offset: float
-    follows: bool
+__all__ = ["UrdfChain"]
 
 
 class _Workspace(threading.local):
@@ -85,22 +62,22 @@ class UrdfChain:
 
     def __init__(self, robot: Robot, base: str, tip: str, label: str = "") -> None:
         self.robot, self.base, self.tip, self.label = robot, base, tip, label
-        self._path = _path_joints(robot, base, tip)
-        if not self._path:
+        steps, self._T_joint_tip = walk(robot, base, tip)
+        if not steps:
             raise NoPathError(base, tip, robot.name)
-        self._joints = _columns(self._path)
+        self._steps, self._joints = steps, chain_joints(steps)
         self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
         names = set(self.joint_names)
         self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
-        self._model, self._link_ids, self._tip_id = _serial_model(robot, base, tip)
+        self._model, self._link_ids, self._tip_id = _serial_model(steps, self._T_joint_tip)
         self._workspace = _Workspace(self._model)
         # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
         self._spread: Floats | None = None
-        if any(p.follows for p in self._path):
-            self._spread = np.zeros((len(self._path), len(self._joints)))
-            for k, p in enumerate(self._path):
-                self._spread[k, p.column] = p.multiplier
-        self._shift = np.array([p.offset for p in self._path])
+        if any(step.follows for step in steps):
+            self._spread = np.zeros((len(steps), len(self._joints)))
+            for k, step in enumerate(steps):
+                self._spread[k, step.column] = step.multiplier
+        self._shift = np.array([step.offset for step in steps])
 
     @property
     def name(self) -> str:
@@ -176,6 +153,12 @@ class UrdfChain:
         pin.framesForwardKinematics(self._model, data, self._joint_values(configuration(self, q)))
         return np.array([data.oMf[i].homogeneous for i in self._link_ids])
 
+    @cached_property
+    def joint_path(self) -> JointPath:
+        """The flat form that compiled code runs on."""
+        flat = (step.flat for step in self._steps)
+        return joint_path(flat, self._T_joint_tip.homogeneous, self._lower, self._upper)
+
     def poses(self, Q: ArrayLike) -> Floats:
         """T_base_tip (N, 4, 4) for configurations (N, n)."""
         return poses_by_loop(self, Q)
@@ -194,76 +177,15 @@ class UrdfChain:
         return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"
 
 
-def _path_joints(robot: Robot, base: str, tip: str) -> tuple[_PathJoint, ...]:
-    up, down = robot.path(base, tip)
-    steps = [(j, j.parent) for j in up if j.kind != "fixed"] + [(j, j.child) for j in down if j.kind != "fixed"]
-    on_path = {joint.name for joint, _ in steps}
-    couplings = {c.follower: c for c in robot.couplings if c.follower in on_path and c.leader in on_path}
-    leaders = [joint.name for joint, _ in steps if joint.name not in couplings]
-    found = []
-    for joint, link_behind in steps:
-        c = couplings.get(joint.name, Coupling(joint.name, joint.name, 1.0, 0.0))
-        found.append(
-            _PathJoint(joint, link_behind, leaders.index(c.leader), c.multiplier, c.offset, c.leader != joint.name)
-        )
-    return tuple(found)
-
-
-def _serial_model(robot: Robot, base: str, tip: str) -> tuple[pin.Model, list[int], int]:
-    """The path as a Pinocchio model rooted at base, the frame ids of the links behind its joints, and the tip's.
+def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
+    """The path as a Pinocchio model rooted at its base, the frame ids of the links behind its joints, and the tip's.
 
     Continuous joints become revolute ones, so every joint takes one number.
     """
-    model = pin.Model()
-    model.name = f"{base} to {tip}"
-    up, down = robot.path(base, tip)
-    parent, T_parent_here, links = 0, pin.SE3.Identity(), []
-    for joint, upward in [(j, True) for j in up] + [(j, False) for j in down]:
-        T_above_joint = from_xyz_rpy(joint.origin.xyz, joint.origin.rpy)
-        before, behind = (
-            (pin.SE3.Identity(), T_above_joint.inverse()) if upward else (T_above_joint, pin.SE3.Identity())
-        )
-        if joint.kind == "fixed":
-            T_parent_here = T_parent_here * before * behind
-            continue
-        axis = -np.array(joint.axis) if upward else np.array(joint.axis)
-        kind = pin.JointModelPrismaticUnaligned if joint.kind == "prismatic" else pin.JointModelRevoluteUnaligned
-        parent = model.addJoint(parent, kind(axis), T_parent_here * before, joint.name)
-        T_parent_here = behind
-        links.append(model.addFrame(pin.Frame(f"behind {joint.name}", parent, behind, pin.FrameType.OP_FRAME)))
-    tip_id = model.addFrame(pin.Frame("tip", parent, T_parent_here, pin.FrameType.OP_FRAME))
-    return model, links, tip_id
-
-
-def _columns(path: Sequence[_PathJoint]) -> tuple[ChainJoint, ...]:
-    """The chain's joints: a leader's range and speed are cut down to what its followers on the path allow."""
-    joints: dict[int, ChainJoint] = {}
-    for p in sorted(path, key=lambda p: p.follows):
-        ends = [(end - p.offset) / p.multiplier for end in joint_range(p.joint)]
-        speed = joint_speed(p.joint) / abs(p.multiplier)
-        leader = joints.get(p.column)
-        if leader is None:
-            joints[p.column] = ChainJoint(p.joint.name, _moving(p.joint), min(ends), max(ends), speed)
-        else:
-            lower, upper = max(leader.lower, min(ends)), min(leader.upper, max(ends))
-            joints[p.column] = ChainJoint(leader.name, leader.kind, lower, upper, min(leader.max_velocity, speed))
-    return tuple(joints[column] for column in sorted(joints))
-
-
-def _moving(joint: UrdfJoint) -> Literal["revolute", "continuous", "prismatic"]:
-    if joint.kind == "fixed":
-        raise ValueError(joint.name)  # paths hold moving joints only
-    return joint.kind
-
-
-def joint_range(joint: UrdfJoint) -> tuple[float, float]:
-    """Least and greatest value [rad or m]; infinite for a continuous joint."""
-    if joint.kind == "continuous" or joint.limit is None or joint.limit.lower is None or joint.limit.upper is None:
-        return -math.inf, math.inf
-    return joint.limit.lower, joint.limit.upper
-
-
-def joint_speed(joint: UrdfJoint) -> float:
-    """Greatest speed [rad/s or m/s]; infinite where the file names none."""
-    velocity = joint.limit.velocity if joint.limit else None
-    return math.inf if velocity is None else velocity
+    model, parent, links = pin.Model(), 0, []
+    for step in steps:
+        kind = pin.JointModelPrismaticUnaligned if step.joint.kind == "prismatic" else pin.JointModelRevoluteUnaligned
+        parent = model.addJoint(parent, kind(step.axis), step.placement, step.joint.name)
+        frame = pin.Frame(f"behind {step.joint.name}", parent, step.behind, pin.FrameType.OP_FRAME)
+        links.append(model.addFrame(frame))
+    return model, links, model.addFrame(pin.Frame("tip", parent, T_joint_tip, pin.FrameType.OP_FRAME))
