@@ -109,7 +109,9 @@ def test_robots_lists_what_loads() -> None:
     text = ok("robots")
     assert "nao_v50_h25 = nao" in text
     listed = json.loads(ok("robots", "--format", "json"))
-    assert {row["name"] for row in listed} == set(nk.robot_names()) - {"nao"}
+    assert {row["name"] for row in listed["robots"]} == set(nk.robot_names()) - {"nao"}
+    assert [row["name"] for row in listed["document_chains"]] == list(nk.document_chain_names())
+    assert all(name in text for name in nk.document_chain_names())
 
 
 def test_html_writes_a_page(tmp_path: Path) -> None:
@@ -155,6 +157,12 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
         (("compare", "thesis_left_arm", "nao:left_arm"), "5 joints as"),
         (("compare", "nao:left_arm"), "say what to hold"),
         (("compare", "nao:left_arm", "nao:left_arm", "--read-as", "standard"), "--read-as is for tables"),
+        (("ik", "nao", "--posture", "HeadYaw=0", "--rpy", 1, 2, 3), "--rpy goes with --xyz"),
+        (("ik", "thesis_left_arm", "--xyz", 0, 0, 0), "is a table"),
+        (("ik", "nao", "--xyz", 0, 0, 0, "--seed", -1), "seed"),
+        (("html", "nao", "--output", "/nonexistent/x.html"), "/nonexistent/x.html: No such file"),
+        (("html", "nao", "--output", "/dev/null"), "special file"),
+        (("fk", "nao:torso:" + "x" * 5000), "There is no frame"),
         (("compare", "nothing.toml", "nao:left_arm"), "nothing.toml: no such file"),
         (("html", "nao", "--output", "/"), "a file to write"),
         (("nosuch",), "No such command"),
@@ -175,6 +183,30 @@ def test_a_hostile_file_exits_with_2_path_line_and_reason(tmp_path: Path) -> Non
     assert done.returncode == 2
     assert f"{path}:2:" in done.stderr
     assert "DOCTYPE" in done.stderr
+
+
+def test_joints_outside_their_limits_are_mentioned() -> None:
+    assert "joint_2 = 0 is outside" in ok("fk", "jaco2")
+    assert "outside" not in ok("fk", "jaco2", 0, 3, 3, 0, 0, 0)
+
+
+def test_an_answer_is_printed_before_its_page_fails() -> None:
+    done = run("ik", "nao:left_arm", "--xyz", 0.15, 0.15, 0.1, "--html", "/nonexistent/x.html")
+    assert done.returncode == 2
+    assert "The target is reached" in done.stdout
+
+
+def test_the_demo_as_json(tmp_path: Path) -> None:
+    data = json.loads(ok("demo", "--output", tmp_path, "--format", "json"))
+    assert [row["agrees"] for row in data["comparisons"] if row["a"] == "kofinas_head"] == [True, False]
+    assert all(solution["solved"] for solution in data["solutions"])
+
+
+@pytest.mark.parametrize("environment", [{"COLUMNS": "40"}, {"PYTHONIOENCODING": "ascii"}])
+def test_narrow_or_plain_terminals_lose_no_digit(environment: dict[str, str]) -> None:
+    text = ok("fk", "jaco2", "--deg", 180, 270, 90, 180, 180, 0, **environment)
+    assert "-1.0472" in text
+    assert "0.0661" in text
 
 
 def test_version_help_and_no_colour() -> None:

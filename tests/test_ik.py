@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import nao_kin as nk
@@ -14,6 +14,9 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import Problem, Run, judge
 from nao_kin.se3 import position_distance, rotation_distance
 from tests.conftest import needs_examples, robot
+
+if TYPE_CHECKING:
+    import pinocchio as pin
 
 POSES = [("jaco2", "arm"), ("nao_v50_h25", "left_leg"), ("nao_v50_h25", "right_leg")]
 POSITIONS = [
@@ -90,16 +93,55 @@ def test_a_target_at_the_start_needs_no_iteration() -> None:
     np.testing.assert_array_equal(result.q, q0)
 
 
-@pytest.mark.parametrize("axis", [*np.eye(3).tolist(), [0.6, 0.0, 0.8]])
-def test_a_rotation_by_exactly_pi_is_reached(axis: list[float]) -> None:
+def test_a_start_exactly_half_a_turn_away_is_no_trap(rng: np.random.Generator) -> None:
+    """Turning the last joint by π turns the tip by exactly π about its own axis, at the same position."""
     arm = robot("jaco2").chain("arm")
-    q0 = np.radians([180, 270, 90, 180, 180, 0]) + 0.3
-    turned = arm.pose(q0)
-    turned.rotation = pin.exp3(np.pi * np.array(axis)) @ turned.rotation
-    result = nk.solve(arm, turned, q0)
+    for q in random_configurations(arm, 20, rng):
+        target = arm.pose(q)
+        start = q + np.array([0, 0, 0, 0, 0, math.pi])
+        assert rotation_distance(arm.pose(start), target) == pytest.approx(math.pi, abs=1e-12)
+        result = nk.solve(arm, target, start)
+        assert result.solved, result.message
+        assert max(oracle_errors(result, target)) <= 1e-6
+
+
+@pytest.mark.parametrize("near", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_poses_at_and_near_singularities_are_solved(near: float, rng: np.random.Generator) -> None:
+    """The NAO's leg stretched, its knee at 0, is singular; the knee's range begins at −0.09."""
+    leg = robot("nao_v50_h25").chain("left_leg")
+    knee = leg.joint_names.index("LKneePitch")
+    for q in random_configurations(leg, 10, rng):
+        q[knee] = near
+        target = leg.pose(q)
+        result = nk.solve(leg, target)
+        assert result.solved, result.message
+        assert max(oracle_errors(result, target)) <= 1e-6
+
+
+@pytest.mark.parametrize("tolerance", [1e-8, 1e-10, 1e-12])
+def test_tight_tolerances_end_in_a_verdict(tolerance: float, rng: np.random.Generator) -> None:
+    tolerances = nk.Tolerances(position=tolerance, rotation=tolerance)
+    for name, chain_name in (("jaco2", "arm"), ("nao_v50_h25", "left_arm")):
+        chain = robot(name).chain(chain_name)
+        for q in random_configurations(chain, 15, rng):
+            result = nk.solve(chain, chain.pose(q).translation, tolerances=tolerances)
+            assert result.solved, result.message
+            assert oracle_errors(result, chain.pose(q))[0] <= tolerance + 1e-15
+
+
+@pytest.mark.parametrize("length", [1.0, 100.0, 1000.0])
+def test_a_table_in_the_wrong_unit_raises_nothing(length: float, rng: np.random.Generator) -> None:
+    """Millimetres typed as metres: the arithmetic must hold out."""
+    table = nk.DHChain.from_table([(0, 0, 0, 0), (length, 0, 0, 0), (length / 2, 0, 0, 0)], "standard")
+    for q in rng.uniform(-3, 3, (30, 3)):
+        result = nk.solve(table, table.pose(q).translation, tolerances=nk.Tolerances(position=1e-6 * length))
+        assert result.solved, result.message
+
+
+def test_far_away_is_out_of_reach_without_a_warning() -> None:
+    result = nk.solve(robot("nao_v50_h25").chain("left_arm"), [1e200, 0, 0])
+    assert result.status is nk.Status.OUT_OF_REACH
     assert math.isfinite(result.position_error)
-    assert in_limits(arm, result.q)
-    assert result.solved == (max(oracle_errors(result, turned)) <= 1e-6)
 
 
 @pytest.mark.parametrize("beyond", [1e-6, 1e-3, 0.5, 10.0])
@@ -144,6 +186,26 @@ def test_a_posture_is_a_start_and_the_result_gives_one_back() -> None:
     np.testing.assert_allclose(pose.translation, [0.15, 0.15, 0.1], atol=1e-6)
 
 
+def test_the_posture_of_a_whole_robot_is_a_start() -> None:
+    model = robot("nao_v50_h25")
+    result = nk.solve(model.chain("right_leg"), model.chain("right_leg").pose(np.zeros(6)), model.neutral)
+    assert result.solved
+    assert nk.solve(model.chain("left_arm"), [0.15, 0.15, 0.1], model.neutral).solved
+
+
+@pytest.mark.parametrize(
+    "budget", [{"iterations": -1}, {"iterations": 1.5}, {"restarts": -1}, {"patience": 0}, {"largest_step": math.nan}]
+)
+def test_a_bad_budget_is_named(budget: dict[str, float]) -> None:
+    with pytest.raises(InvalidInputError, match=f"budget, {next(iter(budget))}"):
+        nk.Budget(**budget)
+
+
+def test_a_negative_seed_is_named() -> None:
+    with pytest.raises(InvalidInputError, match="seed"):
+        nk.solve(robot("jaco2").chain("arm"), [0.3, 0.2, 0.3], seed=-1)
+
+
 def test_the_same_call_gives_the_same_result_and_touches_nothing_global() -> None:
     arm = robot("jaco2").chain("arm")
     target = arm.pose(np.radians([20, 150, 60, 100, 30, 10])).homogeneous
@@ -169,7 +231,8 @@ BAD = np.eye(4)
         (np.diag([-1.0, 1.0, 1.0, 1.0]), "violation of 2"),
         (np.eye(4) + np.outer([0, 0, 0, 1], [0, 0, 1, 0]), "last row"),
         (np.full((4, 4), np.inf), "finite"),
-        ("left", "shape"),
+        ("left", r"shape \(\)"),
+        ([[1], [2, 3]], "a position"),
     ],
 )
 def test_bad_targets_are_named(target: object, message: str) -> None:

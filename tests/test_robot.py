@@ -18,7 +18,7 @@ from nao_kin.chain import (
     random_configurations,
 )
 from nao_kin.errors import InvalidInputError, MissingExtraError, NoPathError, UnknownNameError, UrdfError
-from nao_kin.reach import reach_shell
+from nao_kin.ik.reach import reach_shell
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def test_nao_means_v5_with_hands() -> None:
         (lambda: robot("nao_v50_h25").pose({"LElbowRol": 0.0}, "LArm"), "moving joint", "LElbowRoll"),
         (lambda: nk.document_chain("thesis_leftarm"), "document chain", "thesis_left_arm"),
         (lambda: nk.solve(robot("jaco2").chain("arm"), np.eye(4), method="lmm"), "method", "lm"),
-        (lambda: nk.solve(robot("jaco2").chain("arm"), np.eye(4), {"joint1": 0.0}), "joint", "joint_1"),
+        (lambda: nk.solve(robot("jaco2").chain("arm"), np.eye(4), {"joint1": 0.0}), "moving joint", "joint_1"),
     ],
 )
 def test_an_unknown_name_comes_with_near_matches(ask, kind: str, near: str) -> None:
@@ -144,7 +144,51 @@ def test_followers_add_to_their_leaders_column(mimic: nk.Robot, rng: np.random.G
     # m_follow ≥ −0.5 allows z_lead ≤ 0.5; its speed of 2 allows 1; a_follow's 1 allows 5.
     assert (chain.lower[0], chain.upper[0]) == (-1.0, 0.5)
     assert chain.max_velocity[0] == 1.0
-    assert mimic.chain("b", "c").joint_names == ("m_follow",)
+    # Its leader off the path, the first follower stands for the motor, with the range that all of them leave.
+    behind = mimic.chain("b", "d")
+    assert behind.joint_names == ("m_follow",)
+    assert (behind.lower[0], behind.upper[0]) == (-0.5, 2.5)
+    for m in rng.uniform(-0.5, 2.5, 20):
+        posture = mimic.expand({"m_follow": m})
+        assert posture["a_follow"] == pytest.approx(0.1 * m)
+        expected = mimic.pose(posture, "d", base="b").homogeneous
+        np.testing.assert_allclose(behind.pose([m]).homogeneous, expected, atol=1e-15)
+    assert mimic.neutral == {"z_lead": 0.0, "m_follow": 0.5, "a_follow": 0.05}
+
+
+def test_a_solution_is_always_a_posture_of_the_robot(mimic: nk.Robot) -> None:
+    for base, tip in (("a", "d"), ("b", "d"), ("a", "c")):
+        chain = mimic.chain(base, tip)
+        result = nk.solve(chain, chain.pose([0.3]).translation)
+        assert result.solved, result.message
+        posture = mimic.expand(result.posture)
+        assert not mimic.outside_limits(posture)
+
+
+def test_a_posture_is_completed_with_neutral_values() -> None:
+    model = robot("nao_v50_h25")
+    whole = model.complete({"RHipYawPitch": -0.2, "LElbowRoll": -1.0})
+    assert whole["LHipYawPitch"] == whole["RHipYawPitch"] == -0.2
+    assert whole["RElbowRoll"] == model.neutral["RElbowRoll"] > 0.0
+    assert not model.outside_limits(whole)
+    (found,) = model.outside_limits({**whole, "HeadYaw": 1.5, "HeadPitch": 0.4})
+    assert found.joint == "HeadPitch"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (('multiplier="-2"', 'multiplier="0"'), r"m.urdf:6: .*multiplier 0"),
+        (('lower="-0.5" upper="3"', 'lower="5" upper="6"'), "z_lead that its follower m_follow allows"),
+        (('<origin xyz="1 0 0"/>', '<origin xyz="1e300 0 0"/>'), r"m.urdf:5: .*beyond ±1e\+09"),
+    ],
+)
+def test_impossible_couplings_and_numbers_are_named(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    assert change[0] in MIMIC
+    path = tmp_path / "m.urdf"
+    path.write_text(MIMIC.replace(*change))
+    with pytest.raises((UrdfError, InvalidInputError), match=message):
+        nk.load(path).chain("a", "d")
 
 
 def test_continuous_joints_take_one_number_and_no_limits() -> None:
@@ -278,14 +322,23 @@ def test_robots_and_chains_survive_pickling() -> None:
 @pytest.mark.parametrize("name", BUNDLED)
 def test_the_tip_never_leaves_the_reach_shell(name: str, rng: np.random.Generator) -> None:
     model = robot(name)
-    for chain_name in model.chain_frames:
-        chain = model.chain(chain_name)
+    chains = [model.chain(c) for c in model.chain_frames]
+    if name.startswith("nao"):
+        chains.append(model.chain("l_sole", "r_sole"))
+    for chain in chains:
         shell = reach_shell(chain)
         positions = chain.poses(rng.uniform(-np.pi, np.pi, (500, len(chain.joints))))[:, :3, 3]
         distances = np.linalg.norm(positions - shell.centre, axis=1)
         assert distances.max() <= shell.outer * (1 + 1e-12)
         assert distances.min() >= shell.inner * (1 - 1e-12)
         assert max(shell.misses_by(p) for p in positions) == 0.0
+
+
+def test_coupled_joints_count_one_by_one(mimic: nk.Robot, rng: np.random.Generator) -> None:
+    chain = mimic.chain("a", "d")
+    shell = reach_shell(chain)
+    for q in random_configurations(chain, 200, rng):
+        assert shell.misses_by(chain.pose(q).translation) == 0.0
 
 
 def test_prismatic_travel_counts_as_reach(tmp_path: Path) -> None:
@@ -306,6 +359,17 @@ def test_an_arm_that_cannot_fold_has_a_hole_in_its_reach() -> None:
     assert (shell.inner, shell.outer) == (pytest.approx(0.2), pytest.approx(0.4))
     assert shell.misses_by(np.zeros(3)) == pytest.approx(0.2)
     assert nk.solve(table, [0.1, 0.0, 0.0]).status is nk.Status.OUT_OF_REACH
+
+
+def test_half_open_and_huge_ranges_are_sampled(rng: np.random.Generator) -> None:
+    rows = [
+        {"a": 1, "alpha": 0, "d": 0, "theta": 0} | limits
+        for limits in ({"lower": 4.0}, {"upper": -4.0}, {"upper": 1e308, "lower": -1e308})
+    ]
+    Q = random_configurations(nk.DHChain.from_table(rows, "standard"), 500, rng)
+    assert (Q[:, 0].min(), Q[:, 0].max()) == (pytest.approx(4.0, abs=0.1), pytest.approx(4.0 + 2 * np.pi, abs=0.1))
+    assert (Q[:, 1].min(), Q[:, 1].max()) == (pytest.approx(-4.0 - 2 * np.pi, abs=0.1), pytest.approx(-4.0, abs=0.1))
+    assert np.abs(Q[:, 2]).max() == pytest.approx(np.pi, abs=0.1)
 
 
 def test_reprs_say_what_it_is() -> None:

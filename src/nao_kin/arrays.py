@@ -56,25 +56,30 @@ def frozen(array: Floats) -> Floats:
 
 def _floats(value: ArrayLike, what: str, expected: str) -> Floats:
     try:
-        array = np.array(value, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
+        given = np.asarray(value)
+    except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInputError(what, expected, f"{_short(value)} ({error})") from None
-    if np.iscomplexobj(value):
-        raise InvalidInputError(what, expected, "complex numbers")
-    return array
+    # Text, truth values, dates and objects would all turn into numbers that nobody meant; a mask would be lost.
+    if given.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
+        raise InvalidInputError(what, expected, f"{_short(value)} of type {given.dtype}")
+    return np.array(given, dtype=np.float64, order="C")
 
 
 def _finite(array: Floats, what: str, shape: tuple[int, ...], expected: str) -> Floats:
     if array.shape != shape:
-        got = f"{array.size} numbers" if array.ndim == 1 else f"shape {array.shape}"
+        got = _count(array.size) if array.ndim == 1 else f"shape {array.shape}"
         raise InvalidInputError(what, expected, got)
     if not np.isfinite(array).all():
         at = tuple(int(index) for index in np.argwhere(~np.isfinite(array))[0])
         place = str(at[0]) if len(at) == 1 else str(at)
-        raise InvalidInputError(what, f"finite {expected.removeprefix('a ')}", f"{array[at]} at index {place}")
+        raise InvalidInputError(what, f"{expected}, all finite", f"{array[at]} at index {place}")
     return array
 
 
 def _short(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _count(size: int) -> str:
+    return "1 number" if size == 1 else f"{size} numbers"

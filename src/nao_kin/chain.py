@@ -10,8 +10,11 @@ import numpy as np
 
 from nao_kin.arrays import Floats, frozen, rows, vector
 from nao_kin.errors import InvalidInputError
+from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pinocchio as pin
     from numpy.typing import ArrayLike
 
@@ -25,10 +28,10 @@ __all__ = [
     "OutsideLimit",
     "configuration",
     "finite_difference_jacobian",
-    "from_posture",
     "in_limits",
     "into_limits",
     "jacobians_by_loop",
+    "joint_table",
     "neutral",
     "outside_limits",
     "poses_by_loop",
@@ -112,6 +115,10 @@ class Chain(Protocol):
         """Their names."""
 
     @property
+    def path_joint_names(self) -> tuple[str, ...]:
+        """Names of the m physical joints of the path, coupled ones included; m ≥ n."""
+
+    @property
     def lower(self) -> Floats:
         """Least values (n,), read-only."""
 
@@ -139,6 +146,9 @@ class Chain(Protocol):
 
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (m, 4, 4) in the base frame of the link behind each of the m physical joints of the path."""
+
+    def q_of(self, posture: Mapping[str, float]) -> Floats:
+        """This chain's configuration (n,) out of a posture."""
 
     def poses(self, Q: ArrayLike) -> Floats:
         """T_base_tip (N, 4, 4) for configurations (N, n)."""
@@ -174,20 +184,16 @@ def configuration(chain: Chain, q: ArrayLike) -> Floats:
         raise InvalidInputError(error.what, f"{error.expected} ({names})", error.got) from None
 
 
-def from_posture(chain: Chain, posture: dict[str, float]) -> Floats:
-    """The configuration of a chain out of a posture that may name more joints; joints not named are at 0."""
-    return np.array([posture.get(name, 0.0) for name in chain.joint_names], dtype=np.float64)
-
-
 def outside_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> tuple[OutsideLimit, ...]:
     """The joints of `q` outside their own or their coupled range by more than `tolerance` [rad or m]."""
-    values = dict(zip(chain.joint_names, configuration(chain, q).tolist(), strict=True))
-    ranges = [(joint.name, joint.lower, joint.upper) for joint in chain.joints]
-    ranges += [(rule.joint, *rule.range(values[rule.by])) for rule in chain.limit_rules]
+    values = configuration(chain, q).tolist()
+    index = {name: i for i, name in enumerate(chain.joint_names)}
+    ranges = [(i, joint.lower, joint.upper) for i, joint in enumerate(chain.joints)]
+    ranges += [(index[rule.joint], *rule.range(values[index[rule.by]])) for rule in chain.limit_rules]
     return tuple(
-        OutsideLimit(name, values[name], lower, upper)
-        for name, lower, upper in ranges
-        if values[name] < lower - tolerance or values[name] > upper + tolerance
+        OutsideLimit(chain.joints[i].name, values[i], lower, upper)
+        for i, lower, upper in ranges
+        if values[i] < lower - tolerance or values[i] > upper + tolerance
     )
 
 
@@ -216,12 +222,15 @@ def neutral(chain: Chain) -> Floats:
 def random_configurations(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
     """`count` configurations (count, n), uniform inside the limits; a joint without limits turns through ±π.
 
-    A prismatic joint without limits moves through ±1 m. Coupled limits are met by moving the limited joint into its
+    A prismatic joint without limits moves through ±1 m, and a
+    joint with one limit through as much from there. Coupled limits are met by moving the limited joint into its
     range, so its values gather at the ends there.
     """
     half = np.array([1.0 if joint.kind == "prismatic" else math.pi for joint in chain.joints])
-    lower = np.where(np.isfinite(chain.lower), chain.lower, np.minimum(-half, chain.upper - 2 * half))
-    upper = np.where(np.isfinite(chain.upper), chain.upper, np.maximum(half, lower))
+    endless = 1e6  # [rad, m] some files write a huge number where they mean that there is no limit
+    low, high = np.abs(chain.lower) < endless, np.abs(chain.upper) < endless
+    lower = np.where(low, chain.lower, np.where(high, np.minimum(-half, chain.upper - 2 * half), -half))
+    upper = np.where(high, chain.upper, np.where(low, np.maximum(half, chain.lower + 2 * half), half))
     Q = rng.uniform(lower, upper, size=(count, len(chain.joints)))
     if chain.limit_rules:
         Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)
@@ -266,3 +275,13 @@ def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floa
     columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
     lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
     return lower, upper, velocity
+
+
+def joint_table(chain: Chain, q: ArrayLike, title: str = "", note: str = "") -> Table:
+    """The joints of a chain with their values in radians and degrees, or metres."""
+    cells = tuple(
+        (joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}")
+        for joint, value in zip(chain.joints, configuration(chain, q).tolist(), strict=True)
+    )
+    columns = (Column("joint"), Column("[rad, m]", number=True), Column("[deg]", number=True))
+    return Table(columns, cells, title=title, note=note)

@@ -21,15 +21,17 @@ _DEPARTURE_SAMPLES = 64  # a fault shows at almost any configuration
 
 @dataclass(frozen=True, slots=True)
 class Departure:
-    """The first place, from the base outwards, at which two chains part.
+    """The first place, from the base outwards, at which two chains move differently.
 
     Judged by how the joints up to there *move* the tip point away from its place at q = 0, so that two conventions with
-    differently placed link frames are not told apart by those frames.
+    differently placed link frames are not told apart by those frames. The cause is at this joint or before it: in its
+    row, or in the fixed transform that leads to it. A shift along a joint's own axis moves nothing until the next joint
+    turns, so it shows there.
 
     Attributes:
-        joint: Name of the first joint whose motion differs, in the second chain; None if all joints move alike and
-            only the fixed transforms at the ends differ.
-        number: Its place, counted from 1; the number of joints + 1 for the ends.
+        joint: Name of the first physical joint that moves the tip differently, in the second chain; None if all joints
+            move alike and only where the tip sits differs, or if the chains have different numbers of physical joints.
+        number: Its place on the path, counted from 1; one more than there are joints for the ends; 0 if not localised.
         position: Largest distance there [m].
         rotation: Largest angle there [rad].
     """
@@ -40,7 +42,8 @@ class Departure:
     rotation: float
 
     def __str__(self) -> str:
-        return f"{self.joint or 'fixed ends'} ({self.position * 1e3:.4g} mm, {self.rotation:.4g} rad)"
+        where = self.joint or ("fixed end" if self.number else "not localised")
+        return f"{where} ({self.position * 1e3:.4g} mm, {self.rotation:.4g} rad)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +59,8 @@ class Comparison:
         worst_position_q: Where it is (n,).
         max_rotation_error: Largest angle between the two tips [rad].
         worst_rotation_q: Where it is (n,).
-        max_jacobian_error: Largest difference of an entry of the two Jacobians [m/rad, rad/rad].
+        max_linear_jacobian_error: Largest difference of an entry of the linear rows of the two Jacobians [m/rad; 1].
+        max_angular_jacobian_error: The same for the angular rows [1; rad/m].
         first_departure: The first joint at which they part; None if they agree.
     """
 
@@ -68,7 +72,8 @@ class Comparison:
     worst_position_q: Floats
     max_rotation_error: float
     worst_rotation_q: Floats
-    max_jacobian_error: float
+    max_linear_jacobian_error: float
+    max_angular_jacobian_error: float
     first_departure: Departure | None
 
     @property
@@ -88,15 +93,16 @@ class Comparison:
             ("largest position error", f"{self.max_position_error * 1e3:.6g} mm"),
             ("  at q [rad]", worst),
             ("largest rotation error", f"{self.max_rotation_error:.6g} rad"),
-            ("largest Jacobian difference", f"{self.max_jacobian_error:.6g}"),
-            ("part first at", "nowhere" if self.first_departure is None else str(self.first_departure)),
+            ("largest Jacobian difference, linear", f"{self.max_linear_jacobian_error:.6g} m/rad"),
+            ("  angular", f"{self.max_angular_jacobian_error:.6g}"),
+            ("first differ at", "nowhere" if self.first_departure is None else str(self.first_departure)),
             ("configurations", str(self.samples)),
         )
         columns = (Column("quantity"), Column("value"))
         return Table(columns, rows, title=f"{self.a.name} against {self.b.name}")
 
     def __repr__(self) -> str:
-        verdict = "agrees" if self.agrees else f"departs at {self.first_departure}"
+        verdict = "agrees" if self.agrees else f"differs from {self.first_departure}"
         return f"<Comparison {self.a.name} | {self.b.name}: {self.max_position_error * 1e3:.6g} mm, {verdict}>"
 
     def _repr_html_(self) -> str:
@@ -119,18 +125,20 @@ def compare(
         tolerances: When they count as the same.
 
     Raises:
-        InvalidInputError: Different numbers of joints, or no sample asked for.
+        InvalidInputError: Different numbers of joints, no sample asked for, or a negative seed.
     """
     if len(a.joints) != len(b.joints):
         expected = f"{len(b.joints)} joints as {b.name} has ({', '.join(b.joint_names)})"
         raise InvalidInputError(f"{a.name}", expected, f"{len(a.joints)} ({', '.join(a.joint_names)})")
     if samples < 1:
         raise InvalidInputError("samples", "at least 1", str(samples))
+    if seed < 0:
+        raise InvalidInputError("seed", "an integer ≥ 0", str(seed))
     Q = _configurations(a, b, samples, np.random.default_rng(seed))
     pairs = [(a.pose(q), b.pose(q)) for q in Q]
     position = np.array([position_distance(*pair) for pair in pairs])
     rotation = np.array([rotation_distance(*pair) for pair in pairs])
-    jacobian = max(float(np.abs(a.jacobian(q) - b.jacobian(q)).max()) for q in Q[: min(len(Q), 100)])
+    jacobian = np.max([np.abs(a.jacobian(q) - b.jacobian(q)).max(axis=1) for q in Q], axis=0)
     worst_p, worst_r = int(position.argmax()), int(rotation.argmax())
     apart = position[worst_p] > tolerances.agreement_position or rotation[worst_r] > tolerances.agreement_rotation
     # The worst configurations come first: whatever departs, departs there.
@@ -144,7 +152,8 @@ def compare(
         worst_position_q=frozen(Q[worst_p].copy()),
         max_rotation_error=float(rotation[worst_r]),
         worst_rotation_q=frozen(Q[worst_r].copy()),
-        max_jacobian_error=jacobian,
+        max_linear_jacobian_error=float(jacobian[:3].max()),
+        max_angular_jacobian_error=float(jacobian[3:].max()),
         first_departure=_first_departure(a, b, chosen, tolerances) if apart else None,
     )
 
@@ -162,13 +171,16 @@ def _first_departure(a: Chain, b: Chain, Q: Floats, tolerances: Tolerances) -> D
     zero = np.zeros(len(b.joints))
     tip = b.pose(zero).translation
     links_a, links_b = a.link_poses(zero), b.link_poses(zero)
-    if len(links_a) == len(links_b):
-        moved = [(_motions(a.link_poses(q), links_a), _motions(b.link_poses(q), links_b)) for q in Q]
-        for k in range(len(links_b)):
-            position = max(float(np.linalg.norm(_apply(Ma[k], tip) - _apply(Mb[k], tip))) for Ma, Mb in moved)
-            rotation = max(rotation_angle(Ma[k, :3, :3].T @ Mb[k, :3, :3]) for Ma, Mb in moved)
-            if position > tolerances.agreement_position or rotation > tolerances.agreement_rotation:
-                return Departure(b.joint_names[k] if k < len(b.joints) else None, k + 1, position, rotation)
+    if len(links_a) != len(links_b):
+        pairs = [(a.pose(q), b.pose(q)) for q in Q]
+        position = max(position_distance(*pair) for pair in pairs)
+        return Departure(None, 0, position, max(rotation_distance(*pair) for pair in pairs))
+    moved = [(_motions(a.link_poses(q), links_a), _motions(b.link_poses(q), links_b)) for q in Q]
+    for k in range(len(links_b)):
+        position = max(float(np.linalg.norm(_apply(Ma[k], tip) - _apply(Mb[k], tip))) for Ma, Mb in moved)
+        rotation = max(rotation_angle(Ma[k, :3, :3].T @ Mb[k, :3, :3]) for Ma, Mb in moved)
+        if position > tolerances.agreement_position or rotation > tolerances.agreement_rotation:
+            return Departure(b.path_joint_names[k], k + 1, position, rotation)
     T_a, T_b = a.pose(zero), b.pose(zero)
     return Departure(None, len(links_b) + 1, position_distance(T_a, T_b), rotation_distance(T_a, T_b))
 

@@ -37,14 +37,14 @@ from nao_kin.dh_row import (
     in_si,
     known_convention,
 )
-from nao_kin.errors import InvalidInputError
+from nao_kin.errors import InvalidInputError, TableFileError, UnknownNameError
 from nao_kin.kernels.path import JointPath, PathJoint, joint_path
 from nao_kin.se3 import PoseLike, as_pose
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import ArrayLike
 
@@ -81,6 +81,11 @@ class DHChain:
         if not self.rows:
             raise InvalidInputError(f"table {self.name}", "at least one row", "none")
         known_convention(self.convention)
+        for end in ("base", "tool"):  # copies: what the caller holds may change
+            object.__setattr__(self, end, as_pose(getattr(self, end), f"table {self.name}, {end}"))
+        names = self.joint_names
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise InvalidInputError(f"table {self.name}", "joint names that differ", f"{twice[0]!r} twice")
 
     @classmethod
     def from_table(
@@ -99,10 +104,12 @@ class DHChain:
         """A chain from rows in the units of the document they come from.
 
         Args:
-            rows: `DHRow`, mappings with its field names, or sequences (a, alpha, d, theta[, sign]).
+            rows: Mappings with the field names of `DHRow`, sequences (a, alpha, d, theta[, sign]), or `DHRow`, which
+                is in metres and radians and therefore goes with these units only.
             convention: ``"standard"`` or ``"modified"``; there is no default.
-            base: Constant transform before the first row; its translation is in `lengths`.
-            tool: Constant transform after the last row; its translation is in `lengths`.
+            base: Constant transform before the first row; a (4, 4) matrix with its translation in
+                `lengths`, or a `pin.SE3`, which is in metres.
+            tool: Constant transform after the last row, likewise.
             lengths: Unit of a, d, the translations and the limits of prismatic joints.
             angles: Unit of alpha, theta and the limits of revolute joints.
             name: What to call the chain.
@@ -116,12 +123,15 @@ class DHChain:
             if value not in known:
                 raise InvalidInputError(f"table {name}, {what}", " or ".join(map(repr, known)), repr(value))
         known_convention(convention)
+        rows = list(rows)
+        if (lengths, angles) != ("m", "rad") and any(isinstance(row, DHRow) for row in rows):
+            raise InvalidInputError(
+                f"table {name}, rows", "mappings or sequences", f"DHRow with {lengths} and {angles}"
+            )
         converted = tuple(
             in_si(as_row(row, number), number, lengths, angles) for number, row in enumerate(rows, start=1)
         )
-        ends = [as_pose(np.eye(4) if end is None else end, what) for end, what in ((base, "base"), (tool, "tool"))]
-        for end in ends:
-            end.translation = end.translation / PER_METRE[lengths]
+        ends = [_end(end, what, lengths) for end, what in ((base, "base"), (tool, "tool"))]
         return cls(converted, convention, ends[0], ends[1], name, base_name, tip_name)
 
     @classmethod
@@ -131,7 +141,11 @@ class DHChain:
         Raises:
             TableFileError: Unreadable or malformed; carries the line and what was expected.
         """
-        return cls.from_table(**read_table_file(path))
+        arguments = read_table_file(path)
+        try:
+            return cls.from_table(**arguments)
+        except InvalidInputError as error:  # what only the table as a whole can tell, as a name that stands twice
+            raise TableFileError(str(path), None, str(error)) from None
 
     def to_toml(self) -> str:
         """The table as TOML in metres and radians; `from_file` gives the same chain back, bit for bit."""
@@ -155,6 +169,11 @@ class DHChain:
     def joint_names(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(joint.name for joint in self.joints)
+
+    @property
+    def path_joint_names(self) -> tuple[str, ...]:
+        """The same: every joint has a column of its own."""
+        return self.joint_names
 
     @property
     def lower(self) -> Floats:
@@ -185,7 +204,11 @@ class DHChain:
         return pin.SE3(self._frames(configuration(self, q))[-1] @ self.tool.homogeneous)
 
     def link_poses(self, q: ArrayLike) -> Floats:
-        """Poses (n, 4, 4) in the base frame of the table's frame k = 1…n, each fixed to the link behind joint k."""
+        """Poses (n, 4, 4) in the base frame of the table's frame k = 1…n, each fixed to the link behind joint k.
+
+        Raises:
+            InvalidInputError: Wrong length or not finite.
+        """
         return self._frames(configuration(self, q))[1:]
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
@@ -214,6 +237,18 @@ class DHChain:
         R = T_base_tip[:3, :3].T
         return np.concatenate([R @ J[:3], R @ J[3:]])
 
+    def q_of(self, posture: Mapping[str, float]) -> Floats:
+        """The configuration (n,) out of joint values by name; joints not named are at 0.
+
+        Raises:
+            UnknownNameError: A name is no joint of the table.
+            InvalidInputError: A value is not a finite number.
+        """
+        for name in posture:
+            if name not in self.joint_names:
+                raise UnknownNameError("joint", name, self.joint_names, self.name)
+        return configuration(self, [posture.get(name, 0.0) for name in self.joint_names])
+
     @cached_property
     def joint_path(self) -> JointPath:
         """The flat form that compiled code runs on."""
@@ -228,11 +263,19 @@ class DHChain:
         return joint_path(joints, before @ self.tool.homogeneous, self.lower, self.upper)
 
     def poses(self, Q: ArrayLike) -> Floats:
-        """T_base_tip (N, 4, 4) for configurations (N, n)."""
+        """T_base_tip (N, 4, 4) for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
         return poses_by_loop(self, Q)
 
     def jacobians(self, Q: ArrayLike) -> Floats:
-        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
         return jacobians_by_loop(self, Q)
 
     @cached_property
@@ -272,3 +315,11 @@ class DHChain:
             *(Column(c, number=True) for c in ("a [mm]", "α [°]", "d [mm]", "θ offset [°]", "sign")),
         )
         return Table(columns, rows, title=f"{self.name}, {self.convention} convention")
+
+
+def _end(pose: PoseLike | None, what: str, lengths: str) -> pin.SE3:
+    """A constant transform in metres, from a `pin.SE3` in metres or a matrix in the table's unit."""
+    T = as_pose(np.eye(4) if pose is None else pose, what)
+    if not isinstance(pose, pin.SE3):
+        T.translation = T.translation / PER_METRE[lengths]
+    return T

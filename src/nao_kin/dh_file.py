@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_kin.arrays import vector
+from nao_kin.dh_row import as_row
 from nao_kin.errors import InvalidInputError, TableFileError, near_matches
-from nao_kin.se3 import from_xyz_rpy
+from nao_kin.se3 import as_pose, from_xyz_rpy
 
 if TYPE_CHECKING:
     import os
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["format_table_file", "parse_table_file", "read_table_file"]
 
 _LARGEST_FILE = 1 << 20  # a table of a thousand rows is a tenth of this
+_HUGE = 1e300  # TOML has integers that no float holds
 _TOP_KEYS = ("name", "convention", "lengths", "angles", "base_name", "tip_name", "base", "tool", "joint")
 _NUMBERS = ("a", "alpha", "d", "theta")
 _ROW_KEYS = ("name", *_NUMBERS, "sign", "kind", "limits", "max_velocity")
@@ -47,7 +49,7 @@ def read_table_file(path: str | os.PathLike[str]) -> dict[str, Any]:
             raise TableFileError(name, None, "no such file." if not file.exists() else "not a regular file.")
         if file.stat().st_size > _LARGEST_FILE:
             raise TableFileError(name, None, f"larger than {_LARGEST_FILE} bytes, so it is no DH table.")
-        text = file.read_bytes().decode("utf-8")
+        text = file.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise TableFileError(name, None, f"cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
@@ -63,6 +65,8 @@ def parse_table_file(text: str, path: str = "<table>") -> dict[str, Any]:
     """
     try:
         data = tomllib.loads(text)
+    except RecursionError:
+        raise TableFileError(path, None, "nested too deeply to be a DH table.") from None
     except tomllib.TOMLDecodeError as error:
         found = re.search(r"at line (\d+)", str(error))
         raise TableFileError(path, int(found[1]) if found else None, f"not TOML: {error}.") from None
@@ -92,16 +96,19 @@ class _Reader:
             **texts,
             **{key: data[key] for key in _UNITS if key in data},
             **{key: self.pose(data[key], key, angles) for key in ("base", "tool") if key in data},
-            "rows": [self.row(joint, number) for number, joint in enumerate(joints, start=1)],
+            "rows": [self.row(joint, number, angles == "deg") for number, joint in enumerate(joints, start=1)],
         }
 
-    def row(self, joint: object, number: int) -> dict[str, Any]:
+    def row(self, joint: object, number: int, degrees: bool) -> dict[str, Any]:
         if not isinstance(joint, dict):
             raise self.error("joint", number, "", f"[[joint]] {number}: expected a table, got {joint!r}.")
         self.known_keys(joint, _ROW_KEYS, "joint", number)
         if missing := [key for key in _NUMBERS if key not in joint]:
             raise self.error("joint", number, "", f"[[joint]] {number}: {', '.join(missing)} missing.")
         row = {key: self.number(joint[key], "joint", number, key) for key in _NUMBERS}
+        if degrees and (key := next((k for k in ("alpha", "theta") if "pi" in str(joint[k])), "")):
+            reason = f"{key}: {joint[key]!r} is in radians, but this table says angles = 'deg'."
+            raise self.error("joint", number, key, reason)
         if "limits" in joint:
             limits = joint["limits"]
             if not isinstance(limits, list) or len(limits) != 2:
@@ -116,17 +123,27 @@ class _Reader:
         kinds = ("revolute", "continuous", "prismatic")
         if joint.get("kind", "revolute") not in kinds:
             raise self.error("joint", number, "kind", f"kind: expected {' or '.join(kinds)}, got {joint['kind']!r}.")
-        return {**row, **{key: joint[key] for key in ("name", "sign", "kind") if key in joint}}
+        if not isinstance(joint.get("name", ""), str):
+            raise self.error("joint", number, "name", f"name: expected text, got {joint['name']!r}.")
+        checked = {**row, **{key: joint[key] for key in ("name", "sign", "kind") if key in joint}}
+        try:
+            as_row(checked, number)
+        except InvalidInputError as error:  # what only the row as a whole can tell, as limits of a continuous joint
+            raise self.error("joint", number, "", f"[[joint]] {number}: {error}") from None
+        return checked
 
     def pose(self, value: object, section: str, angles: str) -> Floats:
         if not isinstance(value, dict):
             raise self.error("", 0, section, f"{section}: expected a table with xyz and rpy, or with matrix.")
         self.known_keys(value, ("xyz", "rpy", "matrix"), section, 1)
+        if "matrix" in value and len(value) > 1:
+            raise self.error(section, 1, "matrix", f"{section}: matrix says it all; give either it or xyz and rpy.")
         try:
             if "matrix" in value:
-                return np.array(
-                    [[self.number(x, section, 1, "matrix") for x in row] for row in value["matrix"]], dtype=np.float64
-                )
+                entries = [[self.number(x, section, 1, "matrix") for x in row] for row in value["matrix"]]
+                # A length unit does not matter to whether it is rigid; it is applied with the table's own.
+                matrix: Floats = as_pose(entries, "matrix").homogeneous
+                return matrix
             xyz, rpy = (
                 vector([self.number(x, section, 1, key) for x in value.get(key, (0, 0, 0))], f"{section}.{key}", 3)
                 for key in ("xyz", "rpy")
@@ -134,17 +151,20 @@ class _Reader:
         except (InvalidInputError, TypeError, ValueError) as error:
             if isinstance(error, TableFileError):
                 raise
-            raise self.error(section, 1, "", f"{section}: {error}") from None
+            at = "matrix" if "matrix" in value else ""
+            raise self.error(section, 1, at, f"{section}: {error}") from None
         pose: Floats = from_xyz_rpy(xyz, np.radians(rpy) if angles == "deg" else rpy).homogeneous
         return pose
 
     def number(self, value: object, section: str, number: int, key: str, infinite: bool = False) -> float:
         result = math.nan
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            result = float(value)
+            result = float(value) if abs(value) < _HUGE else math.nan
         elif isinstance(value, str):
             result = _arithmetic(value)
-        if math.isnan(result) or (math.isinf(result) and not infinite):
+        if infinite and isinstance(value, float) and math.isinf(value):
+            return value
+        if not math.isfinite(result):
             expected = "a finite number, or arithmetic with pi such as '-pi/2'"
             raise self.error(section, number, key, f"{key}: expected {expected}, got {value!r}.")
         return result

@@ -53,7 +53,8 @@ class DHRow:
         max_velocity: Greatest joint speed [rad/s or m/s].
 
     Raises:
-        InvalidInputError: A number is not finite (limits may be infinite), the sign is not ±1, or the kind unknown.
+        InvalidInputError: A number is not finite (limits may be infinite), the sign is not ±1, the kind is unknown, the
+            limits are inverted or those of a continuous joint, or the speed is not positive.
     """
 
     a: float
@@ -70,17 +71,28 @@ class DHRow:
     def __post_init__(self) -> None:
         what = f"row {self.name or '?'}"
         for key in ("a", "alpha", "d", "theta"):
-            value = getattr(self, key)
-            if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
-                raise InvalidInputError(f"{what}, {key}", "a number", repr(value))
-            if not math.isfinite(value):
-                raise InvalidInputError(f"{what}, {key}", "a finite number", repr(value))
-        if self.sign not in (1, -1):
+            if not math.isfinite(_number(getattr(self, key), f"{what}, {key}")):
+                raise InvalidInputError(f"{what}, {key}", "a finite number", repr(getattr(self, key)))
+        if _number(self.sign, f"{what}, sign") not in (1, -1):
             raise InvalidInputError(f"{what}, sign", "+1 or -1", repr(self.sign))
+        object.__setattr__(self, "sign", int(self.sign))
+        if not isinstance(self.name, str):
+            raise InvalidInputError("row, name", "text", repr(self.name))
         if self.kind not in ("revolute", "continuous", "prismatic"):
             raise InvalidInputError(f"{what}, kind", "'revolute', 'continuous' or 'prismatic'", repr(self.kind))
-        if not self.lower <= self.upper:
-            raise InvalidInputError(f"{what}, limits", "lower ≤ upper", f"[{self.lower}, {self.upper}]")
+        lower, upper = _number(self.lower, f"{what}, lower"), _number(self.upper, f"{what}, upper")
+        if not lower <= upper:
+            raise InvalidInputError(f"{what}, limits", "lower ≤ upper", f"[{lower}, {upper}]")
+        if self.kind == "continuous" and (lower, upper) != (-math.inf, math.inf):
+            raise InvalidInputError(f"{what}, limits", "none, for the joint is continuous", f"[{lower}, {upper}]")
+        if not _number(self.max_velocity, f"{what}, max_velocity") > 0.0:
+            raise InvalidInputError(f"{what}, max_velocity", "a number > 0", repr(self.max_velocity))
+
+
+def _number(value: object, what: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
+        raise InvalidInputError(what, "a number", repr(value))
+    return float(value)
 
 
 def dh_matrix(row: DHRow, q: float, convention: Convention) -> Floats:
@@ -126,6 +138,14 @@ def as_row(row: RowLike, number: int) -> DHRow:
     """
     if isinstance(row, DHRow):
         return row
+    try:
+        return _as_row(row, number)
+    except InvalidInputError as error:
+        what = error.what.replace("row ?", f"row {number}")
+        raise InvalidInputError(what, error.expected, error.got) from None
+
+
+def _as_row(row: RowLike, number: int) -> DHRow:
     if isinstance(row, Mapping):
         known = {f.name for f in fields(DHRow)}
         missing, extra = {"a", "alpha", "d", "theta"} - set(row), set(row) - known
@@ -133,10 +153,10 @@ def as_row(row: RowLike, number: int) -> DHRow:
             got = f"no {', '.join(sorted(missing))}" if missing else f"unknown {', '.join(sorted(map(str, extra)))}"
             raise InvalidInputError(f"row {number}", "a, alpha, d, theta and optional fields of DHRow", got)
         return DHRow(**row)
-    if len(row) not in (4, 5):
+    if not isinstance(row, list | tuple | np.ndarray) or len(row) not in (4, 5):
         raise InvalidInputError(f"row {number}", "(a, alpha, d, theta) or (a, alpha, d, theta, sign)", repr(row))
     a, alpha, d, theta, sign = (*row, 1)[:5]
-    return DHRow(a, alpha, d, theta, int(sign))
+    return DHRow(a, alpha, d, theta, sign)  # DHRow checks the sign and makes it an integer
 
 
 def in_si(row: DHRow, number: int, lengths: str, angles: str) -> DHRow:

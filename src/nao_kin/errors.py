@@ -7,7 +7,7 @@ result whose status says why.
 from __future__ import annotations
 
 import difflib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -26,6 +26,17 @@ __all__ = [
 class NaoKinError(Exception):
     """Root of the errors of this package."""
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An exception pickles as its class called with its message, which is not what the leaves take.
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[NaoKinError], arguments: tuple[Any, ...], data: dict[str, Any]) -> NaoKinError:
+    error = kind.__new__(kind, *arguments)
+    error.args = arguments
+    error.__dict__.update(data)
+    return error
+
 
 class UnknownNameError(NaoKinError, KeyError):
     """A robot, frame, joint, chain or method was asked for by a name that does not exist.
@@ -38,8 +49,8 @@ class UnknownNameError(NaoKinError, KeyError):
     """
 
     def __init__(self, kind: str, name: str, known: Iterable[str], owner: str = "") -> None:
+        name, known = str(name), list(known)
         self.kind, self.name, self.owner = kind, name, owner
-        known = list(known)
         self.near = near_matches(name, known)
         where = f" in {owner}" if owner else ""
         if self.near:

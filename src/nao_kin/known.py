@@ -204,9 +204,9 @@ def robot_file(known: KnownRobot) -> Path:
     if known.source == "bundled":
         return _bundled_folder() / known.file
     folder = example_robot_data_share()
-    if folder is None or not (path := folder / "example-robot-data" / "robots" / known.file).is_file():
+    if folder is None:
         raise MissingExtraError(f"Robot {known.name!r}", "robots")
-    return path
+    return folder / "example-robot-data" / "robots" / known.file
 
 
 def example_robot_data_share() -> Path | None:

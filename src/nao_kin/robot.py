@@ -1,36 +1,37 @@
-"""A robot out of a URDF file, and the chains through it, with Pinocchio doing the arithmetic.
+"""A robot out of a URDF file, with Pinocchio doing the arithmetic.
 
 Pinocchio's own configuration vector, its alphabetical joint order and its (cos, sin) pairs for continuous joints stay
-inside this package: outside, a robot has postures (joint name to number) and a chain has `q` (one number a joint).
+inside this module: outside, a robot has postures, joint name to number.
 """
 
 from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.chain import LimitRule
+from nao_kin.chain import LimitRule, OutsideLimit
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
 from nao_kin.table import Column, Table
 from nao_kin.urdf import UrdfDocument, read_urdf
 from nao_kin.urdf_chain import UrdfChain
-from nao_kin.urdf_path import Coupling, joint_range
+from nao_kin.urdf_path import Coupling, joint_range, motor_ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
+    from pathlib import Path
 
     from nao_kin.arrays import Floats
     from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "Robot", "UrdfChain", "load"]
+__all__ = ["Robot", "load"]
 
 
 def load(robot: str | os.PathLike[str]) -> Robot:
@@ -47,7 +48,7 @@ def load(robot: str | os.PathLike[str]) -> Robot:
         try:
             known = find_known(robot)
         except UnknownNameError:
-            if Path(robot).is_file():
+            if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
                 return Robot.from_document(read_urdf(robot))
             raise
         return Robot.from_document(read_urdf(robot_file(known)), known)
@@ -137,13 +138,16 @@ class Robot:
 
     @cached_property
     def neutral(self) -> dict[str, float]:
-        """The posture with every joint at 0, moved into its limits, coupled limits and couplings last."""
-        posture = {joint.name: _clamp(0.0, *joint_range(joint)) for joint in self.moving_joints}
+        """The posture with every joint at 0, moved into its limits and its followers', coupled limits last.
+
+        Raises:
+            InvalidInputError: A follower's range excludes its leader's.
+        """
+        posture = {name: _clamp(0.0, *ends) for name, ends in motor_ranges(self).items()}
         for rule in self.limit_rules:
             if rule.joint in posture and rule.by in posture:
                 posture[rule.joint] = _clamp(posture[rule.joint], *rule.range(posture[rule.by]))
-        followers = {coupling.follower for coupling in self.couplings}
-        return self.expand({name: value for name, value in posture.items() if name not in followers})
+        return self.expand(posture)
 
     def expand(self, posture: Mapping[str, float]) -> dict[str, float]:
         """The posture of every moving joint: what is not named is at 0, followers go with their leaders.
@@ -154,6 +158,8 @@ class Robot:
             UnknownNameError: A name is no moving joint.
             InvalidInputError: A value is not a finite number, or a follower contradicts its leader.
         """
+        if not isinstance(posture, Mapping):
+            raise InvalidInputError("posture", "joint values by name, as {'LElbowRoll': -0.5}", repr(posture)[:60])
         given: dict[str, float] = {}
         for name, value in posture.items():
             if name not in self._moving_by_name:
@@ -171,6 +177,33 @@ class Robot:
                 raise InvalidInputError(f"posture, {c.follower}", rule, f"{wanted:.6g}")
         return values
 
+    def complete(self, posture: Mapping[str, float]) -> dict[str, float]:
+        """The posture of every moving joint, with those it does not name at their neutral values instead of at 0.
+
+        Raises:
+            UnknownNameError, InvalidInputError: See `expand`.
+        """
+        motor = {c.follower: c.leader for c in self.couplings}
+        named = {motor.get(name, name) for name in posture}
+        rest = {name: value for name, value in self.neutral.items() if motor.get(name, name) not in named}
+        return self.expand({**rest, **posture})
+
+    def outside_limits(self, posture: Mapping[str, float]) -> tuple[OutsideLimit, ...]:
+        """The joints of a posture that are outside their own or their coupled ranges.
+
+        Raises:
+            UnknownNameError, InvalidInputError: See `expand`.
+        """
+        values = self.expand(posture)
+        ranges = [(joint.name, *joint_range(joint)) for joint in self.moving_joints]
+        rules = (rule for rule in self.limit_rules if rule.joint in values and rule.by in values)
+        ranges += [(rule.joint, *rule.range(values[rule.by])) for rule in rules]
+        return tuple(
+            OutsideLimit(name, values[name], lower, upper)
+            for name, lower, upper in ranges
+            if not lower <= values[name] <= upper
+        )
+
     def pose(self, posture: Mapping[str, float], tip: str, base: str | None = None) -> pin.SE3:
         """T_base_tip at a posture; the base is the root unless named.
 
@@ -186,9 +219,10 @@ class Robot:
     def link_poses(self, posture: Mapping[str, float]) -> dict[str, pin.SE3]:
         """T_root_link of every link at a posture (see `expand` for what it raises)."""
         data = self.model.createData()
-        pin.framesForwardKinematics(self.model, data, self._pinocchio_q(self.expand(posture)))
-        ids = {name: self.model.getFrameId(name, pin.FrameType.BODY) for name in self.frame_names}
-        return {name: pin.SE3(data.oMf[i]) for name, i in ids.items()}
+        values = self.expand(posture)
+        q = self._layout.q(np.array([values[name] for name in self.joint_names]))
+        pin.framesForwardKinematics(self.model, data, q)
+        return {name: pin.SE3(data.oMf[i]) for name, i in self._frame_ids.items()}
 
     def chain(self, base: str, tip: str | None = None) -> UrdfChain:
         """The chain from a base frame to a tip frame, or the named chain: ``robot.chain("left_arm")``.
@@ -237,9 +271,13 @@ class Robot:
     def _link_names(self) -> frozenset[str]:
         return frozenset(self.frame_names)
 
-    def _pinocchio_q(self, full_posture: Mapping[str, float]) -> Floats:
-        layout = _Layout.of(self.model, self.joint_names)
-        return layout.q(np.array([full_posture[name] for name in self.joint_names]))
+    @cached_property
+    def _layout(self) -> _Layout:
+        return _Layout.of(self.model, self.joint_names)
+
+    @cached_property
+    def _frame_ids(self) -> dict[str, int]:
+        return {name: self.model.getFrameId(name, pin.FrameType.BODY) for name in self.frame_names}
 
     def __getstate__(self) -> dict[str, Any]:
         return {f.name: self.__dict__[f.name] for f in fields(self)}  # Pinocchio's model is rebuilt when needed
@@ -311,6 +349,10 @@ def _clamp(value: float, lower: float, upper: float) -> float:
 def _number(value: object, joint: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
         raise InvalidInputError(f"posture, {joint}", "a number [rad or m]", repr(value))
-    if not math.isfinite(value):
-        raise InvalidInputError(f"posture, {joint}", "a finite number [rad or m]", repr(float(value)))
-    return float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise InvalidInputError(f"posture, {joint}", "a finite number [rad or m]", repr(value)[:60])
+    return number

@@ -86,7 +86,7 @@ def nearest_rotation(almost: ArrayLike) -> Floats:
 
 def position_distance(T_a_b: pin.SE3, T_a_c: pin.SE3) -> float:
     """Distance of the two origins [m]."""
-    return float(np.linalg.norm(T_a_b.translation - T_a_c.translation))
+    return math.dist(T_a_b.translation, T_a_c.translation)
 
 
 def rotation_distance(T_a_b: pin.SE3, T_a_c: pin.SE3) -> float:

@@ -35,7 +35,7 @@ class Tolerances:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if not 0.0 <= value < float("inf"):
+            if not isinstance(value, (int, float)) or not 0.0 <= value < float("inf"):
                 raise InvalidInputError(f"tolerance {field.name}", "a finite number ≥ 0", repr(value))
 
 

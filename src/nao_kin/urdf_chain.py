@@ -1,7 +1,7 @@
 """A chain through a robot, with Pinocchio doing the arithmetic.
 
-Pinocchio's own configuration vector, its alphabetical joint order and its (cos, sin) pairs for continuous joints stay
-inside this module: outside, a chain has `q`, one plain number a joint.
+Its model is made for the path alone: no joint order but the path's, and one number for a continuous joint as for any
+other.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from nao_kin.kernels.path import JointPath, joint_path
 from nao_kin.urdf_path import Step, chain_joints, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -44,6 +44,7 @@ class _Workspace(threading.local):
         self.data = model.createData()
 
 
+_FLOAT64 = np.dtype(np.float64)
 _REFERENCE = {"base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED, "tip": pin.ReferenceFrame.LOCAL}
 
 
@@ -52,25 +53,20 @@ class UrdfChain:
 
     The path may run up the tree and down again: a joint met from its child's side turns the other way. A coupled joint
     adds to its leader's column; when its leader is not on the path it stands for itself.
-
-    Attributes:
-        robot: The robot it belongs to.
-        base: Frame in which poses are given.
-        tip: Frame whose pose is given.
-        label: Its name among the robot's chains; may be empty.
     """
 
     def __init__(self, robot: Robot, base: str, tip: str, label: str = "") -> None:
-        self.robot, self.base, self.tip, self.label = robot, base, tip, label
+        self._robot, self._base, self._tip, self._label = robot, base, tip, label
         steps, self._T_joint_tip = walk(robot, base, tip)
         if not steps:
             raise NoPathError(base, tip, robot.name)
-        self._steps, self._joints = steps, chain_joints(steps)
+        self._steps, self._joints = steps, chain_joints(robot, steps)
         self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
         names = set(self.joint_names)
         self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
         self._model, self._link_ids, self._tip_id = _serial_model(steps, self._T_joint_tip)
         self._workspace = _Workspace(self._model)
+        self._shape, self._zeros = (len(self._joints),), np.zeros(len(self._joints))
         # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
         self._spread: Floats | None = None
         if any(step.follows for step in steps):
@@ -80,9 +76,24 @@ class UrdfChain:
         self._shift = np.array([step.offset for step in steps])
 
     @property
+    def robot(self) -> Robot:
+        """The robot it belongs to."""
+        return self._robot
+
+    @property
+    def base(self) -> str:
+        """Frame in which poses are given."""
+        return self._base
+
+    @property
+    def tip(self) -> str:
+        """Frame whose pose is given."""
+        return self._tip
+
+    @property
     def name(self) -> str:
         """Robot and chain, for messages."""
-        return f"{self.robot.name} {self.label or f'{self.base}→{self.tip}'}"
+        return f"{self._robot.name} {self._label or f'{self._base}→{self._tip}'}"
 
     @property
     def base_name(self) -> str:
@@ -103,6 +114,11 @@ class UrdfChain:
     def joint_names(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(joint.name for joint in self._joints)
+
+    @property
+    def path_joint_names(self) -> tuple[str, ...]:
+        """Names of the m physical joints of the path, followers included; `link_poses` has a row for each."""
+        return tuple(step.joint.name for step in self._steps)
 
     @property
     def lower(self) -> Floats:
@@ -131,7 +147,7 @@ class UrdfChain:
             InvalidInputError: Wrong length or not finite.
         """
         data = self._workspace.data
-        pin.forwardKinematics(self._model, data, self._joint_values(configuration(self, q)))
+        pin.forwardKinematics(self._model, data, self._joint_values(q))
         return pin.SE3(pin.updateFramePlacement(self._model, data, self._tip_id))
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
@@ -142,16 +158,30 @@ class UrdfChain:
         """
         if frame not in _REFERENCE:
             raise InvalidInputError("frame", "'base' or 'tip'", repr(frame))
-        values = self._joint_values(configuration(self, q))
+        values = self._joint_values(q)
         J = pin.computeFrameJacobian(self._model, self._workspace.data, values, self._tip_id, _REFERENCE[frame])
         J = np.ascontiguousarray(J).reshape(6, -1)  # of a single joint, Pinocchio hands over a vector
         return J if self._spread is None else J @ self._spread
 
     def link_poses(self, q: ArrayLike) -> Floats:
-        """Poses (m, 4, 4) in the base frame of the link behind each physical joint of the path, base to tip."""
+        """Poses (m, 4, 4) in the base frame of the link behind each physical joint of the path, base to tip.
+
+        Raises:
+            InvalidInputError: Wrong length or not finite.
+        """
         data = self._workspace.data
-        pin.framesForwardKinematics(self._model, data, self._joint_values(configuration(self, q)))
+        pin.framesForwardKinematics(self._model, data, self._joint_values(q))
         return np.array([data.oMf[i].homogeneous for i in self._link_ids])
+
+    def q_of(self, posture: Mapping[str, float]) -> Floats:
+        """This chain's part (n,) of a posture of the whole robot; joints that it does not name are at 0.
+
+        Raises:
+            UnknownNameError: A name is no joint of the robot.
+            InvalidInputError: A value is not a finite number, or contradicts a coupling.
+        """
+        values = self._robot.expand(posture)
+        return np.array([values[name] for name in self.joint_names], dtype=np.float64)
 
     @cached_property
     def joint_path(self) -> JointPath:
@@ -160,18 +190,32 @@ class UrdfChain:
         return joint_path(flat, self._T_joint_tip.homogeneous, self._lower, self._upper)
 
     def poses(self, Q: ArrayLike) -> Floats:
-        """T_base_tip (N, 4, 4) for configurations (N, n)."""
+        """T_base_tip (N, 4, 4) for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
         return poses_by_loop(self, Q)
 
     def jacobians(self, Q: ArrayLike) -> Floats:
-        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
         return jacobians_by_loop(self, Q)
 
-    def _joint_values(self, q: Floats) -> Floats:
-        return q if self._spread is None else self._spread @ q + self._shift
+    def _joint_values(self, q: ArrayLike) -> Floats:
+        # What numpy needs to check a vector costs three times the kinematics, so the usual case is decided by hand: the
+        # product with zeros is 0 for finite numbers only.
+        if type(q) is np.ndarray and q.dtype is _FLOAT64 and q.shape == self._shape and q.dot(self._zeros) == 0.0:
+            values: Floats = q
+        else:
+            values = configuration(self, q)
+        return values if self._spread is None else self._spread @ values + self._shift
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return UrdfChain, (self.robot, self.base, self.tip, self.label)
+        return UrdfChain, (self._robot, self._base, self._tip, self._label)
 
     def __repr__(self) -> str:
         return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"

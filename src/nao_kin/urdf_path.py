@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot
     from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "Step", "chain_joints", "joint_range", "walk"]
+__all__ = ["Coupling", "Step", "chain_joints", "joint_range", "motor_ranges", "walk"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +78,9 @@ def walk(robot: Robot, base: str, tip: str) -> tuple[tuple[Step, ...], pin.SE3]:
     """
     up, down = robot.path(base, tip)
     met = [(joint, True) for joint in up] + [(joint, False) for joint in down]
-    moving = {joint.name for joint, _ in met if joint.kind != "fixed"}
-    # A follower whose leader is off the path stands for itself.
-    couplings = {c.follower: c for c in robot.couplings if c.follower in moving and c.leader in moving}
-    own = [joint.name for joint, _ in met if joint.kind != "fixed" and joint.name not in couplings]
+    couplings = _couplings_on([joint.name for joint, _ in met if joint.kind != "fixed"], robot.couplings)
+    # In the order of the path; an owner may come after the first joint that goes with it.
+    own = [name for name, c in couplings.items() if c.leader == name]
     steps: list[Step] = []
     T_joint_here = pin.SE3.Identity()
     for joint, upward in met:
@@ -92,7 +91,7 @@ def walk(robot: Robot, base: str, tip: str) -> tuple[tuple[Step, ...], pin.SE3]:
         if joint.kind == "fixed":
             T_joint_here = T_joint_here * before * behind
             continue
-        c = couplings.get(joint.name, Coupling(joint.name, joint.name, 1.0, 0.0))
+        c = couplings[joint.name]
         axis = np.array(joint.axis, dtype=np.float64) * (-1.0 if upward else 1.0)
         placement, column, follows = T_joint_here * before, own.index(c.leader), c.leader != joint.name
         steps.append(Step(joint, placement, axis, behind, column, c.multiplier, c.offset, follows))
@@ -100,27 +99,72 @@ def walk(robot: Robot, base: str, tip: str) -> tuple[tuple[Step, ...], pin.SE3]:
     return tuple(steps), T_joint_here
 
 
-def chain_joints(steps: Sequence[Step]) -> tuple[ChainJoint, ...]:
-    """The columns of a chain: a leader's range and speed are cut down to what its followers on the path allow.
+def _couplings_on(names: Sequence[str], couplings: Sequence[Coupling]) -> dict[str, Coupling]:
+    """How each of the named joints hangs on the one among them that owns its motor's column.
+
+    That is the leader where it is among them; else the first of its followers stands for the motor, and the others go
+    with it.
+    """
+    by_follower = {c.follower: c for c in couplings}
+    to_motor = {name: by_follower.get(name, Coupling(name, name, 1.0, 0.0)) for name in names}
+    owners: dict[str, Coupling] = {}
+    for c in to_motor.values():
+        if c.leader in to_motor:
+            owners[c.leader] = to_motor[c.leader]
+        else:
+            owners.setdefault(c.leader, c)
+    found = {}
+    for name, c in to_motor.items():
+        owner = owners[c.leader]
+        ratio = c.multiplier / owner.multiplier
+        found[name] = Coupling(name, owner.follower, ratio, c.offset - ratio * owner.offset)
+    return found
+
+
+def motor_ranges(robot: Robot) -> dict[str, tuple[float, float]]:
+    """The range of every joint that is no follower, cut down to what all its followers allow.
 
     Raises:
-        InvalidInputError: The followers leave a leader no value at all.
+        InvalidInputError: A follower leaves its leader no value at all.
     """
+    ranges = {joint.name: joint_range(joint) for joint in robot.moving_joints}
+    for c in robot.couplings:
+        ranges[c.leader] = _narrowed(ranges[c.leader], c, ranges.pop(c.follower))
+    return ranges
+
+
+def chain_joints(robot: Robot, steps: Sequence[Step]) -> tuple[ChainJoint, ...]:
+    """The columns of a chain: a range is cut down to what all joints of the same motor allow, on the path or off it.
+
+    Raises:
+        InvalidInputError: A follower leaves its leader no value at all.
+    """
+    ranges, to_motor = motor_ranges(robot), {c.follower: c for c in robot.couplings}
     joints: dict[int, ChainJoint] = {}
-    for step in sorted(steps, key=lambda step: step.follows):
-        lower, upper, speed = *joint_range(step.joint), joint_speed(step.joint)
-        leader = joints.get(step.column)
-        if leader is None:
-            joints[step.column] = ChainJoint(step.joint.name, _moving(step.joint), lower, upper, speed)
-        elif step.multiplier:
-            ends = sorted((end - step.offset) / step.multiplier for end in (lower, upper))
-            lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
-            if lower > upper:
-                expected = f"a value of {leader.name} that its follower {step.joint.name} allows"
-                raise InvalidInputError("coupled joints", expected, "ranges that exclude each other")
-            speed = min(leader.max_velocity, speed / abs(step.multiplier))
-            joints[step.column] = ChainJoint(leader.name, leader.kind, lower, upper, speed)
+    for step in sorted(steps, key=lambda step: step.follows):  # owners first
+        name, speed, owner = step.joint.name, joint_speed(step.joint), joints.get(step.column)
+        if owner is not None:
+            speed = min(owner.max_velocity, speed / abs(step.multiplier))
+            joints[step.column] = replace(owner, max_velocity=speed)
+            continue
+        c = to_motor.get(name, Coupling(name, name, 1.0, 0.0))
+        lower, upper = sorted(c.multiplier * end + c.offset for end in ranges[c.leader])
+        joints[step.column] = ChainJoint(name, _moving(step.joint), lower, upper, speed)
     return tuple(joints[column] for column in sorted(joints))
+
+
+def _narrowed(leader: tuple[float, float], coupling: Coupling, follower: tuple[float, float]) -> tuple[float, float]:
+    """The part of a leader's range in which its follower stays in its own.
+
+    Raises:
+        InvalidInputError: There is none.
+    """
+    ends = sorted((end - coupling.offset) / coupling.multiplier for end in follower)
+    lower, upper = max(leader[0], ends[0]), min(leader[1], ends[1])
+    if lower > upper:
+        expected = f"a value of {coupling.leader} that its follower {coupling.follower} allows"
+        raise InvalidInputError("coupled joints", expected, f"ranges {leader} and {follower}, which exclude each other")
+    return lower, upper
 
 
 def _moving(joint: UrdfJoint) -> Literal["revolute", "continuous", "prismatic"]:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from typing import NoReturn
@@ -58,13 +59,22 @@ def root(
 
 def main() -> NoReturn:
     """Runs the command line and exits with its status."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a terminal that has no arrow gets a question mark
     try:
         status = app(standalone_mode=True)
     except NaoKinError as error:
         typer.echo(f"nao-kin: {error}", err=True)
         sys.exit(2)
-    except BrokenPipeError:
-        # The reader (head, less) has left: that is not an error, but Python would report one on flushing.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):
+            _reader_has_left()
+        typer.echo(f"nao-kin: {error.filename or 'file'}: {error.strerror or error}.", err=True)
+        sys.exit(2)
     sys.exit(status)
+
+
+def _reader_has_left() -> NoReturn:
+    """A reader such as head or less may leave early: that is not an error, but Python would report one on flushing."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(0)

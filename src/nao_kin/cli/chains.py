@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
+import os
 from typing import TYPE_CHECKING
 
 import typer
@@ -12,9 +12,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from nao_kin.chain import Chain
-    from nao_kin.robot import Robot, UrdfChain
+    from nao_kin.robot import Robot
+    from nao_kin.urdf_chain import UrdfChain
 
-__all__ = ["chain_from_spec", "chain_of_robot", "document_or_file", "parse_posture", "parse_values"]
+__all__ = ["chain_from_spec", "chain_of_robot", "document_or_file", "parse_posture", "parse_values", "robot_and_chain"]
 
 SPEC_HELP = "A table (TOML file or document chain) or ROBOT, ROBOT:CHAIN or ROBOT:BASE:TIP."
 
@@ -41,7 +42,7 @@ def chain_from_spec(spec: str) -> Chain:
 
     if (table := document_or_file(spec)) is not None:
         return table
-    robot, *frames = [spec] if Path(spec).is_file() else spec.split(":")
+    robot, *frames = [spec] if os.path.isfile(spec) else spec.split(":")  # noqa: PTH113 - Path raises for long names
     try:
         model = load(robot)
     except UnknownNameError:
@@ -54,6 +55,20 @@ def chain_from_spec(spec: str) -> Chain:
         case [base, tip]:
             return chain_of_robot(model, None, base, tip)
     raise typer.BadParameter(f"{spec!r}: expected ROBOT, ROBOT:CHAIN or ROBOT:BASE:TIP.")
+
+
+def robot_and_chain(spec: str, name: str | None, base: str | None, tip: str | None) -> tuple[Robot, UrdfChain]:
+    """The robot of a command that takes ROBOT, ROBOT:CHAIN or ROBOT:BASE:TIP, or the chain as options."""
+    from nao_kin.robot import load
+    from nao_kin.urdf_chain import UrdfChain
+
+    if name is None and base is None and tip is None:
+        chain = chain_from_spec(spec)
+        if not isinstance(chain, UrdfChain):
+            raise typer.BadParameter(f"{spec} is a table; this command needs a robot.")
+        return chain.robot, chain
+    robot = load(spec)
+    return robot, chain_of_robot(robot, name, base, tip)
 
 
 def chain_of_robot(robot: Robot, name: str | None, base: str | None, tip: str | None) -> UrdfChain:

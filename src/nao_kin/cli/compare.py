@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,8 +13,9 @@ from nao_kin.cli.output import FormatOption, OutputFormat, report, report_json
 
 if TYPE_CHECKING:
     from nao_kin.chain import Chain
+    from nao_kin.crosscheck import Comparison
 
-__all__ = ["compare"]
+__all__ = ["compare", "comparison_data"]
 
 
 class ReadAs(StrEnum):
@@ -44,31 +46,29 @@ def compare(
     b = chain_from_spec(chain) if chain is not None else _model_of(table)
     found = hold_against(a, b, samples=samples, seed=seed)
     if format is OutputFormat.json:
-        departure = found.first_departure
-        report_json(
-            {
-                "a": a.name,
-                "b": b.name,
-                "agrees": found.agrees,
-                "max_position_error": found.max_position_error,
-                "max_rotation_error": found.max_rotation_error,
-                "max_jacobian_error": found.max_jacobian_error,
-                "worst_position_q": found.worst_position_q,
-                "worst_rotation_q": found.worst_rotation_q,
-                "first_departure": departure
-                and {
-                    "joint": departure.joint,
-                    "number": departure.number,
-                    "position": departure.position,
-                    "rotation": departure.rotation,
-                },
-                "samples": found.samples,
-            }
-        )
+        report_json(comparison_data(found))
     else:
         report(found.table())
     if not found.agrees:
         raise typer.Exit(1)
+
+
+def comparison_data(found: Comparison) -> dict[str, Any]:
+    """A comparison as plain data."""
+    departure = found.first_departure
+    return {
+        "a": found.a.name,
+        "b": found.b.name,
+        "agrees": found.agrees,
+        "max_position_error": found.max_position_error,
+        "max_rotation_error": found.max_rotation_error,
+        "max_linear_jacobian_error": found.max_linear_jacobian_error,
+        "max_angular_jacobian_error": found.max_angular_jacobian_error,
+        "worst_position_q": found.worst_position_q,
+        "worst_rotation_q": found.worst_rotation_q,
+        "first_departure": None if departure is None else asdict(departure),
+        "samples": found.samples,
+    }
 
 
 def _model_of(table: str) -> Chain:

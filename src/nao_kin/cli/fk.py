@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nao_kin.cli.chains import SPEC_HELP, chain_from_spec, chain_of_robot, document_or_file, parse_values
-from nao_kin.cli.output import FormatOption, OutputFormat, report, report_json, rows_of_numbers
+from nao_kin.cli.output import FormatOption, OutputFormat, number, report, report_json, rows_of_numbers
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -30,7 +30,7 @@ def fk(
     """Forward kinematics: pose and Jacobian of a chain's tip, with the documents' DH chains of it beside."""
     import numpy as np
 
-    from nao_kin.cli.tables import joint_table
+    from nao_kin.chain import joint_table, outside_limits
 
     which = _chain(robot, chain, base, tip)
     typed = parse_values(values or [], deg, which)
@@ -38,6 +38,8 @@ def fk(
     data = pose_data(which, q)
     if jacobian:
         data["jacobian"] = which.jacobian(q)
+    outside = outside_limits(which, q)
+    data["outside_limits"] = [str(joint) for joint in outside]
     data["documents"] = [pose_data(table, q) for table in _documents(which)]
     if format is OutputFormat.json:
         report_json(data)
@@ -45,6 +47,8 @@ def fk(
     title = f"{which.name}: {which.base_name} → {which.tip_name}"
     report(joint_table(which, q, title), "", _poses_table([data, *data["documents"]]))
     report("", "T_base_tip", rows_of_numbers(data["T"]))
+    if outside:
+        report("", *(f"Outside its limits: {joint}." for joint in outside))
     if jacobian:
         report("", "Jacobian, base axes, rows vx vy vz wx wy wz", rows_of_numbers(data["jacobian"]))
 
@@ -77,7 +81,7 @@ def _chain(robot: str, name: str | None, base: str | None, tip: str | None) -> C
 
 def _documents(chain: Chain) -> list[Chain]:
     from nao_kin.documents.chains import document_chain, documents_of
-    from nao_kin.robot import UrdfChain
+    from nao_kin.urdf_chain import UrdfChain
 
     if not isinstance(chain, UrdfChain):
         return []
@@ -93,7 +97,7 @@ def _poses_table(poses: list[dict[str, Any]]) -> Table:
     rows = []
     for pose in poses:
         apart = math.dist(pose["position"], truth) * 1e3
-        numbers = [f"{x + 0.0:.4f}" for x in pose["position"]] + [f"{x + 0.0:.4f}" for x in pose["rpy"]]
+        numbers = [number(x, 4) for x in (*pose["position"], *pose["rpy"])]
         rows.append((pose["chain"], *numbers, "" if pose is poses[0] else f"{apart:.4f}"))
     headings = ("x", "y", "z", "roll", "pitch", "yaw", "Δ [mm]")
     columns = (Column("chain"), *(Column(heading, number=True) for heading in headings))

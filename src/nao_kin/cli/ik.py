@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.cli.chains import chain_of_robot, parse_posture
+from nao_kin.cli.chains import parse_posture, robot_and_chain
 from nao_kin.cli.output import FormatOption, OutputFormat, report, report_json
 
-__all__ = ["ik"]
+if TYPE_CHECKING:
+    from nao_kin.ik.problem import IKResult
+    from nao_kin.ik.target import TargetLike
+    from nao_kin.robot import Robot
+    from nao_kin.urdf_chain import UrdfChain
+
+__all__ = ["ik", "result_data"]
 
 Triple = tuple[float, float, float]
 
 
 def ik(
-    robot: Annotated[str, typer.Argument(help="A known robot or the path of a URDF.")],
+    robot: Annotated[str, typer.Argument(help="ROBOT, ROBOT:CHAIN or ROBOT:BASE:TIP.")],
     chain: Annotated[str | None, typer.Option(help="A named chain of the robot, as left_arm.")] = None,
     base: Annotated[str | None, typer.Option(help="Base frame; default the root.")] = None,
     tip: Annotated[str | None, typer.Option(help="Tip frame.")] = None,
@@ -29,43 +35,50 @@ def ik(
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """Inverse kinematics: joints that bring the tip to a position, a pose, or where a posture has it."""
+    from nao_kin.chain import joint_table
+    from nao_kin.ik.methods import solve
+
+    model, path = robot_and_chain(robot, chain, base, tip)
+    result = solve(path, _target(model, path, xyz, rpy, posture, deg), method=method, seed=seed)
+    if format is OutputFormat.json:
+        report_json(result_data(result))
+    else:
+        report(joint_table(path, result.q, f"{path.name}: {path.base} → {path.tip}"), result.message)
+    if html is not None:
+        from nao_kin.view.export import export_html
+
+        typer.echo(f"wrote {export_html(html, model, model.complete(result.posture))}", err=True)
+    if not result.solved:
+        raise typer.Exit(1)
+
+
+def _target(
+    robot: Robot, path: UrdfChain, xyz: Triple | None, rpy: Triple | None, posture: list[str] | None, degrees: bool
+) -> TargetLike:
     import numpy as np
 
-    from nao_kin.ik.methods import solve
-    from nao_kin.robot import load
     from nao_kin.se3 import from_xyz_rpy
 
     if (xyz is None) == (not posture):
         raise typer.BadParameter("say where to: either --xyz (and --rpy), or --posture.")
-    model = load(robot)
-    path = chain_of_robot(model, chain, base, tip)
     if posture:
-        target = model.pose(parse_posture(posture, deg, model), path.tip, path.base)
-    elif rpy is None:
-        target = np.array(xyz)
-    else:
-        target = from_xyz_rpy(xyz or (0, 0, 0), np.radians(rpy) if deg else np.array(rpy))
-    result = solve(path, target, method=method, seed=seed)
-    if html is not None:
-        from nao_kin.view.export import export_html
+        if rpy is not None:
+            raise typer.BadParameter("--rpy goes with --xyz; a posture has its own orientation.")
+        return robot.pose(parse_posture(posture, degrees, robot), path.tip, path.base)
+    if rpy is None:
+        return np.array(xyz)
+    return from_xyz_rpy(xyz or (0, 0, 0), np.radians(rpy) if degrees else np.array(rpy))
 
-        typer.echo(f"wrote {export_html(html, model, result.posture)}", err=True)
-    if format is OutputFormat.json:
-        report_json(
-            {
-                "chain": path.name,
-                "solved": result.solved,
-                "status": result.status.name,
-                "message": result.message,
-                "q": result.posture,
-                "position_error": result.position_error,
-                "rotation_error": result.rotation_error,
-                "iterations": result.iterations,
-            }
-        )
-    else:
-        from nao_kin.cli.tables import joint_table
 
-        report(joint_table(path, result.q, f"{path.name}: {path.base} → {path.tip}"), result.message)
-    if not result.solved:
-        raise typer.Exit(1)
+def result_data(result: IKResult) -> dict[str, Any]:
+    """A result as plain data."""
+    return {
+        "chain": result.problem.chain.name,
+        "solved": result.solved,
+        "status": result.status.name,
+        "message": result.message,
+        "q": result.posture,
+        "position_error": result.position_error,
+        "rotation_error": result.rotation_error,
+        "iterations": result.iterations,
+    }

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from nao_kin.table import Table
 
-__all__ = ["FormatOption", "OutputFormat", "progress", "report", "report_json", "rows_of_numbers"]
+__all__ = ["FormatOption", "OutputFormat", "number", "progress", "report", "report_json", "rows_of_numbers"]
 
 
 T = TypeVar("T")
@@ -38,6 +38,7 @@ def report(*parts: Table | str) -> None:
 
     # rich keeps bold and dim under NO_COLOR; people set it for plain text.
     console = Console(highlight=False, color_system=None if os.environ.get("NO_COLOR") else "auto")
+    console.width = max(console.width, 80)  # a narrower terminal folds lines; rich would cut digits off
     for part in parts:
         console.print(Text(part) if isinstance(part, str) else part)
 
@@ -60,7 +61,12 @@ def progress(items: Iterable[T], what: str, total: int) -> Iterator[T]:
 
 def rows_of_numbers(matrix: Any, indent: str = "  ") -> str:
     """A matrix as lines of numbers, six decimals, rounding's −0 shown as 0."""
-    return "\n".join(indent + " ".join(f"{round(float(x), 6) + 0.0:10.6f}" for x in row) for row in matrix)
+    return "\n".join(indent + " ".join(f"{number(x, 6):>10}" for x in row) for row in matrix)
+
+
+def number(value: float, decimals: int) -> str:
+    """A number with that many decimals; rounding's −0 is 0."""
+    return f"{round(float(value), decimals) + 0.0:.{decimals}f}"
 
 
 def _plain(data: Any) -> Any:

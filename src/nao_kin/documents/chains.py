@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.documents import kofinas, matlab_head, practicum, thesis
 from nao_kin.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nao_kin.dh import DHChain
 
 __all__ = ["DOCUMENT_CHAINS", "DocumentChain", "document_chain", "document_chain_names", "documents_of"]
@@ -22,49 +19,53 @@ class DocumentChain:
     """A chain of a document and the chain of a robot that it describes.
 
     Attributes:
-        build: Makes the chain as printed.
+        maker: Module of this package, function in it and its arguments that make the chain as printed.
         robot: Known robot that the document is about.
         base: Base frame there.
         tip: Tip frame there.
         source: Document and place in it.
     """
 
-    build: Callable[[], DHChain]
+    maker: tuple[str, ...]
     robot: str
     base: str
     tip: str
     source: str
 
+    def build(self) -> DHChain:
+        """The chain as printed; its module is imported now, so that listing names costs nothing."""
+        module, function, *arguments = self.maker
+        chain: DHChain = getattr(importlib.import_module(f"nao_kin.documents.{module}"), function)(*arguments)
+        return chain
 
-_KOFINAS = "Kofinas et al. 2013"
+
+_KOFINAS = "Kofinas et al., NAOKinematics library"
 
 DOCUMENT_CHAINS: Final[dict[str, DocumentChain]] = {
     "thesis_left_arm": DocumentChain(
-        thesis.left_arm, "nao_v50_h21", "torso", "LArm", "Bischoff 2016, Table 3 and (3.1.0.1)"
+        ("thesis", "left_arm"), "nao_v50_h21", "torso", "LArm", "Bischoff 2016, Table 3 and (3.1.0.1)"
     ),
     "thesis_right_arm": DocumentChain(
-        thesis.right_arm, "nao_v50_h21", "torso", "RArm", "Bischoff 2016, Table 4 and (3.1.0.2)"
+        ("thesis", "right_arm"), "nao_v50_h21", "torso", "RArm", "Bischoff 2016, Table 4 and (3.1.0.2)"
     ),
     "matlab_head": DocumentChain(
-        matlab_head.head, "nao_v33_h25", "torso", "CameraTop_frame", "MATLAB example, getKinematicChain('head')"
+        ("matlab_head", "head"), "nao_v33_h25", "torso", "CameraTop_frame", "MATLAB example, getKinematicChain('head')"
     ),
     "matlab_left_hand": DocumentChain(
-        matlab_head.left_hand, "nao_v33_h21", "torso", "LArm", "MATLAB example, getKinematicChain('lefthand')"
+        ("matlab_head", "left_hand"), "nao_v33_h21", "torso", "LArm", "MATLAB example, getKinematicChain('lefthand')"
     ),
     "practicum_jaco2": DocumentChain(
-        practicum.jaco2, "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
+        ("practicum", "jaco2"), "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
     ),
-    "kofinas_head": DocumentChain(kofinas.head, "nao_v33_h25", "torso", "Head", _KOFINAS),
-    "kofinas_left_arm": DocumentChain(partial(kofinas.arm, "left"), "nao_v33_h25", "torso", "LArm", _KOFINAS),
-    "kofinas_right_arm": DocumentChain(partial(kofinas.arm, "right"), "nao_v33_h25", "torso", "RArm", _KOFINAS),
-    "kofinas_left_arm_h21": DocumentChain(
-        partial(kofinas.arm, "left", "h21"), "nao_v33_h21", "torso", "LArm", _KOFINAS
-    ),
+    "kofinas_head": DocumentChain(("kofinas", "head"), "nao_v33_h25", "torso", "Head", _KOFINAS),
+    "kofinas_left_arm": DocumentChain(("kofinas", "arm", "left"), "nao_v33_h25", "torso", "LArm", _KOFINAS),
+    "kofinas_right_arm": DocumentChain(("kofinas", "arm", "right"), "nao_v33_h25", "torso", "RArm", _KOFINAS),
+    "kofinas_left_arm_h21": DocumentChain(("kofinas", "arm", "left", "h21"), "nao_v33_h21", "torso", "LArm", _KOFINAS),
     "kofinas_right_arm_h21": DocumentChain(
-        partial(kofinas.arm, "right", "h21"), "nao_v33_h21", "torso", "RArm", _KOFINAS
+        ("kofinas", "arm", "right", "h21"), "nao_v33_h21", "torso", "RArm", _KOFINAS
     ),
-    "kofinas_left_leg": DocumentChain(partial(kofinas.leg, "left"), "nao_v33_h25", "torso", "LLeg", _KOFINAS),
-    "kofinas_right_leg": DocumentChain(partial(kofinas.leg, "right"), "nao_v33_h25", "torso", "RLeg", _KOFINAS),
+    "kofinas_left_leg": DocumentChain(("kofinas", "leg", "left"), "nao_v33_h25", "torso", "LLeg", _KOFINAS),
+    "kofinas_right_leg": DocumentChain(("kofinas", "leg", "right"), "nao_v33_h25", "torso", "RLeg", _KOFINAS),
 }
 
 

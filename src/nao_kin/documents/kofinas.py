@@ -1,7 +1,7 @@
-"""Kofinas, Orfanoudakis and Lagoudakis, "Complete analytical inverse kinematics for NAO", 2013: DH tables as published.
+"""DH tables of the NAO by Kofinas, Orfanoudakis and Lagoudakis, from whom thesis and MATLAB example take their chains.
 
-The thesis and the MATLAB example take their chains from there. The tables are in the modified (Craig) convention; the
-figures are those of the group's public NAO kinematics library. Lengths by default are those of V3.3 to V6.
+Their paper is "Complete analytical inverse kinematics for NAO", 2013; the figures here are those of their public
+library NAOKinematics, which are in the modified (Craig) convention. Lengths by default are those of V3.3 to V6.
 """
 
 from __future__ import annotations

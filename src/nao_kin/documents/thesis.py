@@ -25,7 +25,10 @@ _QUARTER: Final = math.pi / 2
 
 
 def left_arm() -> DHChain:
-    """Table 3 between T_Basis and Rz(π/2) T_End, equation (3.1.0.1), with the standard matrix of (2.2.2.6)."""
+    """Table 3 between T_Basis and Rz(π/2) T_End, equation (3.1.0.1), with the standard matrix of (2.2.2.6).
+
+    The equation prints five factors A_0^1 … A_4^5, the table has four rows; the four are taken.
+    """
     return DHChain(
         rows=(
             DHRow(0.0, -_QUARTER, 0.0, 0.0, name="LShoulderPitch"),
@@ -43,7 +46,10 @@ def left_arm() -> DHChain:
 
 
 def right_arm() -> DHChain:
-    """Table 4 between T_Basis and Rz(−π/2) T_End Rz(−π), equation (3.1.0.2), with the standard matrix of (2.2.2.6)."""
+    """Table 4 between T_Basis and Rz(−π/2) T_End Rz(−π), equation (3.1.0.2), with the standard matrix of (2.2.2.6).
+
+    Four factors for the table's four rows, where the equation prints five.
+    """
     return DHChain(
         rows=(
             DHRow(0.0, -_QUARTER, 0.0, 0.0, name="RShoulderPitch"),

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pinocchio as pin
 
 from nao_kin.chain import into_limits, random_configurations
+from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import Problem, Run, Status, Trace
-from nao_kin.reach import reach_shell
+from nao_kin.ik.reach import reach_shell
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,12 +33,23 @@ class Budget:
         restarts: Further starts, at random configurations inside the limits, after the caller's.
         patience: A start is given up after this many iterations that have not halved its error.
         largest_step: Joint steps are scaled down to this [rad or m].
+
+    Raises:
+        InvalidInputError: A count is no integer or too small, or the step is not positive.
     """
 
     iterations: int = 200
     restarts: int = 40
     patience: int = 8
     largest_step: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, least in (("iterations", 0), ("restarts", 0), ("patience", 1)):
+            value = getattr(self, name)
+            if not isinstance(value, int) or isinstance(value, bool) or value < least:
+                raise InvalidInputError(f"budget, {name}", f"an integer ≥ {least}", repr(value))
+        if not 0.0 < self.largest_step < math.inf:
+            raise InvalidInputError("budget, largest_step", "a finite number > 0", repr(self.largest_step))
 
 
 def run_reference(
@@ -49,9 +62,15 @@ def run_reference(
     """
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
-    misses_by = reach_shell(problem.chain).misses_by(problem.target.T_base_target.translation)
+    shell = reach_shell(problem.chain)
+    misses_by = shell.misses_by(problem.target.T_base_target.translation)
     misses_by = misses_by if misses_by > problem.tolerances.position else 0.0
-    search = _Search(problem, rule, budget, keep_trace)
+    goal = problem
+    if misses_by:  # then the nearest place that link lengths allow is what to head for
+        place = pin.SE3(problem.target.T_base_target)
+        place.translation = shell.nearest(place.translation)
+        goal = replace(problem, target=replace(problem.target, T_base_target=place))
+    search = _Search(goal, rule, budget, keep_trace)
     ended = search.descend(start)
     while ended is not Status.SOLVED and not misses_by and search.starts <= budget.restarts:
         again = search.descend(random_configurations(problem.chain, 1, rng)[0])

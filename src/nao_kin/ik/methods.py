@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.chain import Chain, configuration, from_posture, neutral
+from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik import rules
 from nao_kin.ik.loop import Budget, run_reference
@@ -73,8 +73,8 @@ def solve(
     Args:
         chain: The chain.
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
-        q0: Start, a vector (n,) or a posture (joints not named at 0); outside the limits it is moved inside and the
-            result says so. By default all zeros, moved inside.
+        q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
+            inside and the result says so. By default all zeros, moved inside.
         method: A name in `METHODS`.
         tolerances: When the target counts as reached.
         budget: How long to try.
@@ -86,7 +86,7 @@ def solve(
 
     Raises:
         InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
-        UnknownNameError: No such method; carries near matches.
+        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
     """
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
@@ -94,6 +94,8 @@ def solve(
     if wanted.kind not in chosen.targets:
         expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
         raise InvalidInputError("target", expected, f"a {wanted.kind} target")
+    if not isinstance(seed, int) or seed < 0:
+        raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
     start = _start(chain, q0)
     problem = Problem(chain, wanted, tolerances)
     run = run_reference(problem, chosen.rule, start, budget or Budget(), np.random.default_rng(seed), trace)
@@ -104,8 +106,5 @@ def _start(chain: Chain, q0: ArrayLike | Mapping[str, float] | None) -> np.ndarr
     if q0 is None:
         return neutral(chain)
     if isinstance(q0, Mapping):
-        for name in q0:
-            if name not in chain.joint_names:
-                raise UnknownNameError("joint", name, chain.joint_names, chain.name)
-        return configuration(chain, from_posture(chain, dict(q0)))
+        return chain.q_of(q0)
     return configuration(chain, q0)

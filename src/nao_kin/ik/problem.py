@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from nao_kin.arrays import Floats, frozen
-from nao_kin.chain import Chain, OutsideLimit, outside_limits
-from nao_kin.table import Column, Table
+from nao_kin.chain import Chain, OutsideLimit, joint_table, outside_limits
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from nao_kin.ik.target import Target
 
 __all__ = ["IKResult", "Problem", "Run", "Status", "Trace", "judge"]
@@ -59,7 +60,11 @@ class Trace:
     q: Floats
     position_error: Floats
     rotation_error: Floats
-    start: Floats
+    start: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        for array in (self.q, self.position_error, self.rotation_error, self.start):
+            array.flags.writeable = False
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -140,8 +145,8 @@ class IKResult:
         parts = [self.status.value, f"Position error {self.position_error:.3g} m"]
         if self.rotation_error is not None:
             parts[-1] += f", rotation error {self.rotation_error:.3g} rad"
-        parts[-1] += f" after {self.run.iterations} iterations from {self.run.starts} start(s)."
-        if self.run.misses_by:
+        parts[-1] += f" after {_count(self.run.iterations, 'iteration')} from {_count(self.run.starts, 'start')}."
+        if self.status is Status.OUT_OF_REACH:
             parts.append(f"It misses by at least {self.run.misses_by:.3g} m.")
         parts += [f"{outside}." for outside in self.outside]
         if self.run.start_moved:
@@ -155,9 +160,11 @@ class IKResult:
         return f"<IKResult {self.status.name}: {self.message.removeprefix(self.status.value).strip()}>"
 
     def _repr_html_(self) -> str:
-        rows = tuple((name, f"{value:.6f}", f"{np.degrees(value):.3f}") for name, value in self.posture.items())
-        columns = (Column("joint"), Column("value [rad, m]", number=True), Column("[°]", number=True))
-        return Table(columns, rows, title=self.status.name, note=self.message)._repr_html_()
+        return joint_table(self.problem.chain, self.q, self.status.name, self.message)._repr_html_()
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def judge(problem: Problem, run: Run) -> IKResult:

@@ -19,10 +19,13 @@ DAMPING = 0.05
 
 
 def levenberg_marquardt(J: Floats, e: Floats) -> Floats:
-    """Damped least squares, Δq = (JᵀJ + λ² 1)⁻¹ Jᵀ e, with λ² proportional to the squared error.
+    """Error-damped least squares, Δq = Jᵀ (J Jᵀ + λ² 1)⁻¹ e = (Jᵀ J + λ² 1)⁻¹ Jᵀ e, with λ² proportional to |e|².
 
     Far away the damping keeps steps small, near the target it vanishes and the step becomes Newton's.
 
     Source: S. K. Chan and P. D. Lawrence, "General inverse kinematics with the error damped pseudoinverse", 1988.
     """
-    return np.linalg.solve(J.T @ J + DAMPING * (e @ e) * np.eye(J.shape[1]), J.T @ e).astype(np.float64, copy=False)
+    A = J @ J.T
+    # The second term is rounding's size: it keeps A definite at a singularity.
+    A[np.diag_indices_from(A)] += DAMPING * (e @ e) + 1e-15 * np.trace(A) + 1e-300
+    return (J.T @ np.linalg.solve(A, e)).astype(np.float64, copy=False)

@@ -62,7 +62,10 @@ class Target:
             return value
         if isinstance(value, pin.SE3):
             return cls.pose(value)
-        shape = np.shape(value)
+        try:
+            shape = np.shape(value)
+        except ValueError:  # ragged lists
+            shape = ()
         if shape == (3,):
             return cls.position(value)
         if shape == (4, 4):

@@ -59,6 +59,18 @@ def mimic_references(outline: Outline) -> Iterator[Defect]:
             yield Defect(line_of(mimic), where, message, _near_hint(leader, outline.joint_by_name))
         elif outline.joint_by_name[leader].get("type") not in MOVING:
             yield Defect(line_of(mimic), where, f"The {where} mimics {shown(leader)}, which does not move.")
+        elif _is_zero(mimic.get("multiplier")):
+            hint = "Make the joint fixed if it is not to move."
+            yield Defect(
+                line_of(mimic), where, f"The {where} mimics {shown(leader)} with multiplier 0 or next to it.", hint
+            )
+
+
+def _is_zero(text: str | None) -> bool:
+    try:
+        return text is not None and abs(float(text)) < 1e-9
+    except ValueError:  # another rule's defect
+        return False
 
 
 def no_links(outline: Outline) -> Iterator[Defect]:

@@ -17,6 +17,7 @@ __all__ = [
     "MeshFile",
     "Mimic",
     "Origin",
+    "OtherShape",
     "Shape",
     "Solid",
     "Sphere",
@@ -67,7 +68,14 @@ class MeshFile:
     scale: Triple = (1.0, 1.0, 1.0)
 
 
-Shape: TypeAlias = Box | Cylinder | Sphere | MeshFile
+@dataclass(frozen=True, slots=True)
+class OtherShape:
+    """A shape that URDF does not define, as a capsule: known to be there, not known in size."""
+
+    tag: str
+
+
+Shape: TypeAlias = Box | Cylinder | Sphere | MeshFile | OtherShape
 
 
 @dataclass(frozen=True, slots=True)

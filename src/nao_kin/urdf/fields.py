@@ -27,15 +27,18 @@ class Field:
         count: How many numbers it holds.
         required: Whether the element means nothing without it.
         minimum: Smallest value allowed, or None.
+        largest: Largest magnitude allowed.
     """
 
     attribute: str
     count: int = 1
     required: bool = False
     minimum: float | None = None
+    largest: float = math.inf
 
 
-_ORIGIN = (Field("xyz", 3), Field("rpy", 3))
+_FAR = 1e9  # [m, rad, ratio] beyond it products of transforms lose every digit, or overflow
+_ORIGIN = (Field("xyz", 3, largest=_FAR), Field("rpy", 3, largest=_FAR))
 _ROUND = (Field("radius", required=True, minimum=0.0),)
 _INERTIA = tuple(Field(name, required=True) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
 _COLOUR = (Field("rgba", 4, required=True),)
@@ -68,7 +71,7 @@ FIELDS: dict[tuple[str, ...], tuple[Field, ...]] = {
         Field("velocity", minimum=0.0),
         Field("effort", minimum=0.0),
     ),
-    ("joint", "mimic"): (Field("multiplier"), Field("offset")),
+    ("joint", "mimic"): (Field("multiplier", largest=_FAR), Field("offset", largest=_FAR)),
 }
 """Fields by the path of their element below the root."""
 

@@ -13,6 +13,7 @@ from nao_kin.urdf.elements import (
     MeshFile,
     Mimic,
     Origin,
+    OtherShape,
     Solid,
     Sphere,
     UrdfJoint,
@@ -83,7 +84,8 @@ def _solids(link: etree._Element, tag: str, palette: dict[str, Colour]) -> tuple
 
 
 def _shape(geometry: etree._Element) -> Shape | None:
-    """The first shape that URDF defines; any other (a capsule, say) is left undrawn, as urdfdom leaves it."""
+    """The first shape that URDF defines, else the first that it does not; None where there is none at all."""
+    other = None
     for element in geometry:
         match tag_of(element):
             case "box":
@@ -94,7 +96,9 @@ def _shape(geometry: etree._Element) -> Shape | None:
                 return Sphere(_number(element, "radius"))
             case "mesh":
                 return MeshFile(element.get("filename", ""), _triple(element, "scale", (1.0, 1.0, 1.0)))
-    return None
+            case tag:
+                other = other or (OtherShape(tag) if tag else None)
+    return other
 
 
 def _material_colour(material: etree._Element, palette: dict[str, Colour]) -> Colour | None:

@@ -26,7 +26,7 @@ __all__ = ["MESH_SUFFIXES", "MeshRoots", "resolve_mesh"]
 MeshRoots: TypeAlias = "Mapping[str, str | os.PathLike[str]] | Sequence[str | os.PathLike[str]]"
 """Package folders by package name, or folders that hold packages."""
 
-MESH_SUFFIXES = frozenset({".3mf", ".dae", ".glb", ".gltf", ".obj", ".off", ".ply", ".stl"})
+MESH_SUFFIXES = frozenset({".dae", ".obj", ".off", ".ply", ".stl"})
 """Endings of the formats that are read, in lower case: no wish for a key or a password file gets further than this."""
 
 # At least two letters, so that a Windows drive is no scheme.

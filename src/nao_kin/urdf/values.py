@@ -41,6 +41,8 @@ def _field_fault(element: etree._Element, field: Field) -> tuple[str, str]:
         return str(error), "Separate numbers by blanks, without commas." if "," in text else ""
     if field.minimum is not None and min(values) < field.minimum:
         return f"is {shown(text)}, which is below {field.minimum:g}", ""
+    if max(map(abs, values)) > field.largest:
+        return f"is {shown(text)}, which is beyond ±{field.largest:g}", ""
     return "", ""
 
 

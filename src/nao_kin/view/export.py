@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import html
 import os
 import secrets
@@ -62,12 +63,13 @@ def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str
 
     Raises:
         UnknownNameError: The posture names a joint the robot does not have.
-        InvalidInputError: A value of the posture is not a finite number, or `path` is a directory.
+        InvalidInputError: A value of the posture is not a finite number, or `path` is a directory or a device.
         OSError: The file cannot be written.
     """
     target = Path(path)
-    if target.is_dir():
-        raise InvalidInputError("path", "the name of a file to write", f"the directory {target}")
+    if target.exists() and not target.is_file():
+        kind = "directory" if target.is_dir() else "special file"
+        raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
     _replace(target, page(robot_scene(robot, posture)).encode("utf-8"))
     return target
 
@@ -98,6 +100,14 @@ def _replace(target: Path, content: bytes) -> None:
         with neighbour.open("xb") as file:
             file.write(content)
         neighbour.replace(real)
+    except OSError as error:
+        _forget(neighbour)
+        raise type(error)(error.errno, error.strerror, str(target)) from None  # the neighbour is nobody's business
     except BaseException:
-        neighbour.unlink(missing_ok=True)
+        _forget(neighbour)
         raise
+
+
+def _forget(file: Path) -> None:
+    with contextlib.suppress(OSError):
+        file.unlink(missing_ok=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.errors import UrdfError
 from nao_kin.se3 import from_xyz_rpy
-from nao_kin.urdf.elements import Box, Cylinder, MeshFile, Solid, Sphere
+from nao_kin.urdf.elements import Box, Cylinder, MeshFile, OtherShape, Solid, Sphere
 from nao_kin.urdf.outline import shown
 from nao_kin.urdf.resources import resolve_mesh
 from nao_kin.view.crease import Indices, split_creases
@@ -71,7 +71,13 @@ class Triangulator:
 
     def _solid(self, solid: Solid, link: str) -> tuple[Mesh, ...]:
         try:
-            parts = self._file(solid.shape) if isinstance(solid.shape, MeshFile) else (_primitive(solid.shape),)
+            match solid.shape:
+                case MeshFile():
+                    parts = self._file(solid.shape)
+                case OtherShape(tag):
+                    raise UnreadableMeshError(f"URDF defines no shape {shown(tag)}")
+                case _:
+                    parts = (_primitive(solid.shape),)
         except (UrdfError, UnreadableMeshError, OSError) as error:
             self._notes[_note(link, solid, error)] = None
             return ()
@@ -145,6 +151,8 @@ def _note(link: str, solid: Solid, error: Exception) -> str:
 
 
 def _title(solid: Solid) -> str:
+    if isinstance(solid.shape, OtherShape):
+        return "visual"
     if isinstance(solid.shape, MeshFile):
         return f"mesh {shown(solid.shape.filename.rsplit('/', 1)[-1])}"
     return type(solid.shape).__name__.lower()

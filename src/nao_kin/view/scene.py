@@ -130,7 +130,10 @@ def robot_scene(robot: Robot, posture: Mapping[str, float] | None = None) -> Sce
         joints=tuple(JointValue(j.name, j.kind, values[j.name]) for j in document.joints if j.name in values),
         source=Path(document.path).name,
         sha256=document.sha256,
-        notes=triangulator.notes if any(link.visuals for link in document.links) else (SHAPELESS,),
+        notes=(
+            *(f"Outside its limits: {outside}." for outside in robot.outside_limits(given)),
+            *(triangulator.notes if any(link.visuals for link in document.links) else (SHAPELESS,)),
+        ),
     )
 
 

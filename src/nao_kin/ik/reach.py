@@ -39,6 +39,16 @@ class ReachShell:
         distance = math.dist(p_base, self.centre)
         return max(0.0, distance - self.outer * (1.0 + _ROUNDING), self.inner * (1.0 - _ROUNDING) - distance)
 
+    def nearest(self, p_base: Floats) -> Floats:
+        """The point of the shell (3,) [m] nearest to a point (3,)."""
+        away = np.asarray(p_base, dtype=np.float64) - self.centre
+        distance = math.dist(p_base, self.centre)
+        wanted = min(max(distance, self.inner), self.outer)
+        if distance == 0.0:
+            away, distance = np.array([1.0, 0.0, 0.0]), 1.0
+        nearest: Floats = self.centre + away * (wanted / distance)
+        return nearest
+
 
 _SHELLS: weakref.WeakKeyDictionary[Chain, ReachShell] = weakref.WeakKeyDictionary()
 
@@ -51,8 +61,7 @@ def reach_shell(chain: Chain) -> ReachShell:
     from the first point, which the base carries: at most their sum, and at least the longest less all the others. The
     points are slid along their axes to make the sum small. A prismatic joint adds its largest travel to both ends.
 
-    Without a bound (a prismatic joint without limits, or coupled joints, whose column is no single axis) the outer
-    radius is infinite.
+    Without a bound, which takes a prismatic joint without limits, the outer radius is infinite.
     """
     try:
         return _SHELLS[chain]
@@ -62,17 +71,17 @@ def reach_shell(chain: Chain) -> ReachShell:
 
 
 def _shell(chain: Chain) -> ReachShell:
-    zero = np.zeros(len(chain.joints))
-    tip, J = chain.pose(zero).translation, chain.jacobian(zero)
+    path = chain.joint_path
     axes, travel = [], 0.0
-    for joint, v, w in zip(chain.joints, J[:3].T, J[3:].T, strict=True):
-        if joint.kind == "prismatic":
-            travel += max(abs(joint.lower), abs(joint.upper))
-        elif abs(np.linalg.norm(w) - 1.0) > 1e-9 or abs(v @ w) > 1e-9:
-            return ReachShell(np.zeros(3), 0.0, math.inf)
+    R, p = np.eye(3), np.zeros(3)
+    for k, column in enumerate(path.columns):  # the physical joints at value 0, whatever moves them
+        p, R = p + R @ path.translations[k], R @ path.rotations[k]
+        if path.prismatic[k]:
+            ends = (path.multipliers[k] * end + path.offsets[k] for end in (path.lower[column], path.upper[column]))
+            travel += max(map(abs, ends))
         else:
-            axes.append((tip + np.cross(w, v), w))  # the point of the axis nearest to the tip, and its direction
-    points = _short_polygon(axes, tip)
+            axes.append((p, R[:, 2]))
+    points = _short_polygon(axes, p + R @ path.tool_translation)
     rods = [math.dist(a, b) for a, b in itertools.pairwise(points)]
     outer = sum(rods)
     inner = max(0.0, 2.0 * max(rods, default=0.0) - outer)
