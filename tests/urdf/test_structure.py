@@ -126,6 +126,7 @@ REFUSED: dict[str, tuple[str, str, int, str]] = {
     "NaN": ("bad-number", two_links('<origin xyz="0 nan 0"/>' + LIMIT), 7, "'nan'"),
     "infinity": ("bad-number", two_links('<origin xyz="0 0 -inf"/>' + LIMIT), 7, "'-inf'"),
     "1e999": ("bad-number", two_links('<origin xyz="0 0 1e999"/>' + LIMIT), 7, "'1e999'.*largest"),
+    "far away": ("bad-number", two_links('<origin xyz="0 0 -2e9"/>' + LIMIT), 7, r"beyond ±1e\+09"),
     "hexadecimal": ("bad-number", two_links('<axis xyz="0x1 0 0"/>' + LIMIT), 7, "'0x1'"),
     "underscore": ("bad-number", two_links('<axis xyz="1_0 0 0"/>' + LIMIT), 7, "'1_0'"),
     "other digits": ("bad-number", two_links('<axis xyz="١ 0 0"/>' + LIMIT), 7, "not a finite decimal"),
