@@ -10,6 +10,7 @@ import pytest
 from nao_kin import errors
 
 LEAVES = (
+    errors.AuditError(3, "1 m", "2 m"),
     errors.UnknownNameError("frame", "larm", ["LArm", "RArm"], "nao"),
     errors.InvalidInputError("q", "5 numbers", "4 numbers"),
     errors.NoPathError("l_sole", "LLeg", "nao"),

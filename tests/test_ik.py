@@ -25,6 +25,7 @@ POSITIONS = [
     ("phantomx", "leg_rm"),
     ("jaco2", "arm"),
 ]
+ROUNDING = 1e-14  # a coupled limit is interpolated twice, in compiled code and by numpy
 OPTIONAL = [("ur5", "arm"), ("panda", "arm"), ("xarm7", "arm"), ("talos", "left_arm"), ("z1", "arm")]
 
 
@@ -45,7 +46,7 @@ def test_reachable_poses_are_solved(name: str, chain_name: str, rng: np.random.G
         result = nk.solve(chain, target)
         assert result.solved, result.message
         assert max(oracle_errors(result, target)) <= 1e-6
-        assert in_limits(chain, result.q)
+        assert in_limits(chain, result.q, ROUNDING)
 
 
 @pytest.mark.parametrize(("name", "chain_name"), POSITIONS)
@@ -74,7 +75,7 @@ def test_coupled_limits_hold_at_every_iterate(rng: np.random.Generator) -> None:
         for q in random_configurations(chain, 20, rng):
             result = nk.solve(chain, chain.pose(q), trace=True)
             assert result.trace is not None
-            assert all(in_limits(chain, iterate) for iterate in result.trace.q)
+            assert all(in_limits(chain, iterate, ROUNDING) for iterate in result.trace.q)
 
 
 def test_a_chain_with_coupled_joints_is_solved(rng: np.random.Generator) -> None:
@@ -231,7 +232,7 @@ BAD = np.eye(4)
         (np.diag([-1.0, 1.0, 1.0, 1.0]), "violation of 2"),
         (np.eye(4) + np.outer([0, 0, 0, 1], [0, 0, 1, 0]), "last row"),
         (np.full((4, 4), np.inf), "finite"),
-        ("left", r"shape \(\)"),
+        ("left", "got 'left'"),
         ([[1], [2, 3]], "a position"),
     ],
 )

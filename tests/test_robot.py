@@ -275,8 +275,8 @@ def test_an_unknown_jacobian_frame_is_refused() -> None:
 def test_batches_are_the_single_calls_stacked(rng: np.random.Generator) -> None:
     chain = robot("nao_v50_h25").chain("l_sole", "r_gripper")
     Q = random_configurations(chain, 7, rng)
-    np.testing.assert_array_equal(chain.poses(Q), [chain.pose(q).homogeneous for q in Q])
-    np.testing.assert_array_equal(chain.jacobians(Q), [chain.jacobian(q) for q in Q])
+    np.testing.assert_allclose(chain.poses(Q), [chain.pose(q).homogeneous for q in Q], atol=1e-14, rtol=0)
+    np.testing.assert_allclose(chain.jacobians(Q), [chain.jacobian(q) for q in Q], atol=1e-14, rtol=0)
     assert chain.poses(np.empty((0, 12))).shape == (0, 4, 4)
     assert chain.jacobians(np.empty((0, 12))).shape == (0, 6, 12)
     with pytest.raises(InvalidInputError, match=r"\(N, 12\)"):

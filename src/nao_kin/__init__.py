@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
     from nao_kin.errors import NaoKinError as NaoKinError
+    from nao_kin.ik.along import FollowResult as FollowResult
+    from nao_kin.ik.along import follow as follow
+    from nao_kin.ik.along import project_to_reach as project_to_reach
+    from nao_kin.ik.batch import BatchResult as BatchResult
+    from nao_kin.ik.batch import solve_batch as solve_batch
     from nao_kin.ik.loop import Budget as Budget
     from nao_kin.ik.methods import METHODS as METHODS
     from nao_kin.ik.methods import solve as solve
@@ -37,12 +42,14 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
+    "BatchResult": "ik.batch",
     "Budget": "ik.loop",
     "Chain": "chain",
     "ChainJoint": "chain",
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",
+    "FollowResult": "ik.along",
     "IKResult": "ik.problem",
     "LimitRule": "chain",
     "METHODS": "ik.methods",
@@ -56,10 +63,13 @@ _HOME = {
     "document_chain": "documents.chains",
     "document_chain_names": "documents.chains",
     "export_html": "view.export",
+    "follow": "ik.along",
     "load": "robot",
+    "project_to_reach": "ik.along",
     "robot_names": "known",
     "show": "view.export",
     "solve": "ik.methods",
+    "solve_batch": "ik.batch",
 }
 
 __all__ = list(_HOME)

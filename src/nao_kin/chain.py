@@ -26,15 +26,15 @@ __all__ = [
     "JacobianFrame",
     "LimitRule",
     "OutsideLimit",
+    "compiled_jacobians",
+    "compiled_poses",
     "configuration",
     "finite_difference_jacobian",
     "in_limits",
     "into_limits",
-    "jacobians_by_loop",
     "joint_table",
     "neutral",
     "outside_limits",
-    "poses_by_loop",
     "random_configurations",
     "stacked_limits",
 ]
@@ -141,6 +141,9 @@ class Chain(Protocol):
     def pose(self, q: ArrayLike) -> pin.SE3:
         """T_base_tip at q."""
 
+    def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
+        """Rotation (3, 3) and position (3,) of `pose` at a q that is not checked; to be read at once and not kept."""
+
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
         """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base or tip axes."""
 
@@ -237,17 +240,26 @@ def random_configurations(chain: Chain, count: int, rng: np.random.Generator) ->
     return Q
 
 
-def poses_by_loop(chain: Chain, Q: ArrayLike) -> Floats:
-    """`chain.pose` of every row of Q (N, n), stacked to (N, 4, 4)."""
-    configurations = rows(Q, f"Q of {chain.name}", len(chain.joints))
-    return np.array([chain.pose(q).homogeneous for q in configurations]).reshape(-1, 4, 4)
+def compiled_poses(chain: Chain, Q: ArrayLike) -> Floats:
+    """T_base_tip (N, 4, 4) of every row of Q (N, n), on all cores.
+
+    Raises:
+        InvalidInputError: Wrong shape or not finite.
+    """
+    from nao_kin.kernels.forward import poses  # imports numba, which costs time
+
+    return poses(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
 
 
-def jacobians_by_loop(chain: Chain, Q: ArrayLike) -> Floats:
-    """`chain.jacobian` of every row of Q (N, n), stacked to (N, 6, n)."""
-    n = len(chain.joints)
-    configurations = rows(Q, f"Q of {chain.name}", n)
-    return np.array([chain.jacobian(q) for q in configurations]).reshape(-1, 6, n)
+def compiled_jacobians(chain: Chain, Q: ArrayLike) -> Floats:
+    """Frame Jacobians (N, 6, n), base axes, of every row of Q (N, n), on all cores.
+
+    Raises:
+        InvalidInputError: Wrong shape or not finite.
+    """
+    from nao_kin.kernels.forward import jacobians
+
+    return jacobians(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
 
 
 def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -> Floats:

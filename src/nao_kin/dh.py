@@ -20,9 +20,9 @@ from nao_kin.chain import (
     ChainJoint,
     JacobianFrame,
     LimitRule,
+    compiled_jacobians,
+    compiled_poses,
     configuration,
-    jacobians_by_loop,
-    poses_by_loop,
     stacked_limits,
 )
 from nao_kin.dh_file import format_table_file, read_table_file
@@ -203,6 +203,11 @@ class DHChain:
         """
         return pin.SE3(self._frames(configuration(self, q))[-1] @ self.tool.homogeneous)
 
+    def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
+        """Rotation (3, 3) and position (3,) [m] of `pose`, for who checks q (n,) otherwise."""
+        T_base_tip = self._frames(q)[-1] @ self.tool.homogeneous
+        return T_base_tip[:3, :3].copy(order="F"), T_base_tip[:3, 3].copy()  # laid out as Pinocchio's are
+
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (n, 4, 4) in the base frame of the table's frame k = 1…n, each fixed to the link behind joint k.
 
@@ -268,7 +273,7 @@ class DHChain:
         Raises:
             InvalidInputError: Wrong shape or not finite.
         """
-        return poses_by_loop(self, Q)
+        return compiled_poses(self, Q)
 
     def jacobians(self, Q: ArrayLike) -> Floats:
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
@@ -276,7 +281,7 @@ class DHChain:
         Raises:
             InvalidInputError: Wrong shape or not finite.
         """
-        return jacobians_by_loop(self, Q)
+        return compiled_jacobians(self, Q)
 
     @cached_property
     def _limits(self) -> tuple[Floats, Floats, Floats]:

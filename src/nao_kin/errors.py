@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 __all__ = [
+    "AuditError",
     "InvalidInputError",
     "MissingExtraError",
     "NaoKinError",
@@ -100,6 +101,22 @@ class MissingExtraError(NaoKinError, ImportError):
     def __init__(self, what: str, extra: str) -> None:
         self.what, self.extra = what, extra
         super().__init__(f"{what} needs the optional extra '{extra}': pip install 'nao_kin[{extra}]'.")
+
+
+class AuditError(NaoKinError, RuntimeError):
+    """Two independent measurements of a result disagree: a defect of this package or of the machine, to be reported.
+
+    Attributes:
+        row: Number of the row of a batch.
+        by_chain: What the chain's own forward kinematics says.
+        by_kernel: What the compiled one says.
+    """
+
+    def __init__(self, row: int, by_chain: str, by_kernel: str) -> None:
+        self.row, self.by_chain, self.by_kernel = row, by_chain, by_kernel
+        super().__init__(
+            f"Row {row}: the chain measures {by_chain}, the compiled kernel {by_kernel}. Please report it."
+        )
 
 
 class _FileError(NaoKinError, ValueError):

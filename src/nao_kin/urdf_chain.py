@@ -17,9 +17,9 @@ from nao_kin.chain import (
     ChainJoint,
     JacobianFrame,
     LimitRule,
+    compiled_jacobians,
+    compiled_poses,
     configuration,
-    jacobians_by_loop,
-    poses_by_loop,
     stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
@@ -146,9 +146,19 @@ class UrdfChain:
         Raises:
             InvalidInputError: Wrong length or not finite.
         """
-        data = self._workspace.data
-        pin.forwardKinematics(self._model, data, self._joint_values(q))
-        return pin.SE3(pin.updateFramePlacement(self._model, data, self._tip_id))
+        data, model = self._workspace.data, self._model
+        pin.forwardKinematics(model, data, self._joint_values(q))
+        return pin.SE3(pin.updateFramePlacement(model, data, self._tip_id))
+
+    def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
+        """Rotation (3, 3) and position (3,) [m] of `pose`, in memory that the next call on this thread overwrites.
+
+        For who checks q (n,) otherwise: numbers that are not finite give a pose that is none.
+        """
+        data, model = self._workspace.data, self._model
+        pin.forwardKinematics(model, data, q if self._spread is None else self._spread @ q + self._shift)
+        placement = pin.updateFramePlacement(model, data, self._tip_id)
+        return placement.rotation, placement.translation
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
         """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
@@ -195,7 +205,7 @@ class UrdfChain:
         Raises:
             InvalidInputError: Wrong shape or not finite.
         """
-        return poses_by_loop(self, Q)
+        return compiled_poses(self, Q)
 
     def jacobians(self, Q: ArrayLike) -> Floats:
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
@@ -203,7 +213,7 @@ class UrdfChain:
         Raises:
             InvalidInputError: Wrong shape or not finite.
         """
-        return jacobians_by_loop(self, Q)
+        return compiled_jacobians(self, Q)
 
     def _joint_values(self, q: ArrayLike) -> Floats:
         # What numpy needs to check a vector costs three times the kinematics, so the usual case is decided by hand: the

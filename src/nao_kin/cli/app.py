@@ -19,6 +19,7 @@ from nao_kin.cli.fk import fk
 from nao_kin.cli.html import html
 from nao_kin.cli.ik import ik
 from nao_kin.cli.robots import robots
+from nao_kin.cli.warmup import warmup
 from nao_kin.errors import NaoKinError
 
 __all__ = ["app", "main"]
@@ -42,6 +43,7 @@ app.command(context_settings=NUMBERS)(fk)
 app.command()(ik)
 app.command()(compare)
 app.command()(html)
+app.command()(warmup)
 app.add_typer(bench, name="bench")
 
 

@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import pinocchio as pin
 
-from nao_kin.chain import into_limits, random_configurations
+from nao_kin.chain import into_limits
 from nao_kin.errors import InvalidInputError
+from nao_kin.ik import aim
+from nao_kin.ik.measure import errors
 from nao_kin.ik.problem import Problem, Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.starts import make_starts, nearest_first
+from nao_kin.ik.target import KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import pinocchio as pin
+
     from nao_kin.arrays import Floats
+    from nao_kin.chain import Chain
+    from nao_kin.ik.target import Target
+    from nao_kin.tolerances import Tolerances
 
-    UpdateRule = Callable[[Floats, Floats], Floats]
+    UpdateRule = Callable[[Floats, Floats, Floats, Floats, Floats], None]
 
-__all__ = ["Budget", "run_reference"]
+__all__ = ["POLISHED", "REACHED", "Budget", "run_reference"]
+
+
+REACHED: Final = 0.99
+"""Error in units of its tolerance at which the target counts as reached; a little less than 1, so that it still does
+when the judge measures again with another forward kinematics."""
+
+POLISHED: Final = 1e-3
+"""Error in units of its tolerance at which a search ends at once; until then it goes on while the error falls. One
+more step is cheap, and near a target Newton's convergence makes it a thousandfold gain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,17 +48,17 @@ class Budget:
 
     Attributes:
         iterations: Iterations of one start.
-        restarts: Further starts, at random configurations inside the limits, after the caller's.
+        restarts: Further starts, at stored configurations inside the limits, after the caller's; at most 256.
         patience: A start is given up after this many iterations that have not halved its error.
         largest_step: Joint steps are scaled down to this [rad or m].
 
     Raises:
-        InvalidInputError: A count is no integer or too small, or the step is not positive.
+        InvalidInputError: A count is no integer or out of range, or the step is not positive.
     """
 
     iterations: int = 200
-    restarts: int = 40
-    patience: int = 8
+    restarts: int = 100
+    patience: int = 5
     largest_step: float = 1.0
 
     def __post_init__(self) -> None:
@@ -58,24 +76,21 @@ def run_reference(
     """Runs starts until one reaches the target or the budget is spent, and returns the best joints found.
 
     Every iterate is inside the limits: joints at an end that the error pushes outwards are held, the others share the
-    step.
+    step. The further starts are random configurations, those first whose tip is nearest to the target.
     """
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
-    shell = reach_shell(problem.chain)
-    misses_by = shell.misses_by(problem.target.T_base_target.translation)
-    misses_by = misses_by if misses_by > problem.tolerances.position else 0.0
-    goal = problem
-    if misses_by:  # then the nearest place that link lengths allow is what to head for
-        place = pin.SE3(problem.target.T_base_target)
-        place.translation = shell.nearest(place.translation)
-        goal = replace(problem, target=replace(problem.target, T_base_target=place))
-    search = _Search(goal, rule, budget, keep_trace)
+    misses_by, goal = _reachable(problem)
+    search = _Search(problem.chain, goal, problem.tolerances, rule, budget, keep_trace)
     ended = search.descend(start)
-    while ended is not Status.SOLVED and not misses_by and search.starts <= budget.restarts:
-        again = search.descend(random_configurations(problem.chain, 1, rng)[0])
-        # One start that was still getting closer is worth a word: a larger budget may help.
-        ended = Status.BUDGET_SPENT if again is Status.STALLED and ended is Status.BUDGET_SPENT else again
+    if ended is not Status.SOLVED and not misses_by:
+        further = nearest_first(make_starts(problem.chain, rng), goal)
+        for q in itertools.islice(further, budget.restarts):
+            again = search.descend(q)
+            # One start that was still getting closer is worth a word: a larger budget may help.
+            ended = Status.BUDGET_SPENT if again is Status.STALLED and ended is Status.BUDGET_SPENT else again
+            if ended is Status.SOLVED:
+                break
     return Run(
         q=search.best_q,
         ended=Status.OUT_OF_REACH if misses_by else ended,
@@ -87,9 +102,26 @@ def run_reference(
     )
 
 
+def _reachable(problem: Problem) -> tuple[float, Target]:
+    """A distance by which the target certainly misses the reach [m], 0 where that is not proven; and what to head for.
+
+    That is the target itself, or the nearest place to it that the lengths of the links allow.
+    """
+    target = problem.target
+    if target.kind == "orientation" or min(target.weights[:3]) == 0.0:
+        return 0.0, target
+    shell, wanted = reach_shell(problem.chain), target.goal[:3, 3]
+    misses_by = shell.misses_by(wanted)
+    if misses_by <= problem.tolerances.position:
+        return 0.0, target
+    return misses_by, target.moved_to(shell.nearest(wanted))
+
+
 @dataclass
 class _Search:
-    problem: Problem
+    chain: Chain
+    target: Target
+    tolerances: Tolerances
     rule: UpdateRule
     budget: Budget
     keep_trace: bool
@@ -99,50 +131,67 @@ class _Search:
     starts: int = 0
     rows: list[tuple[Floats, float, float, int]] = field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        self.goal, self.weights, self.kind = self.target.goal, np.array(self.target.weights), KINDS[self.target.kind]
+        self.bound = {"position": slice(0, 3), "orientation": slice(3, 6)}.get(self.target.kind, slice(0, 6))
+
     def descend(self, q: Floats) -> Status:
         """Iterates from one start; remembers the best joints of all starts."""
-        chain, target = self.problem.chain, self.problem.target
         self.starts += 1
-        halved, waited = math.inf, 0
-        for _ in range(self.budget.iterations):
-            T_base_tip = chain.pose(q)
-            merit = self._note(q, *target.distances(T_base_tip))
-            if merit <= 1.0:
+        previous, halved, waited, reached = math.inf, math.inf, 0, False
+        for iteration in range(self.budget.iterations + 1):
+            T_base_tip = self.chain.pose(q)
+            tip = np.concatenate([T_base_tip.rotation.ravel(), T_base_tip.translation])
+            e = np.empty(6)
+            aim.raw_error(self.kind, self.goal, tip, e)
+            merit, within = self._note(q, e, T_base_tip)
+            reached = reached or within
+            if reached and (merit <= POLISHED or merit >= previous):
                 return Status.SOLVED
-            waited += 1
+            previous, waited = merit, waited + 1
             if merit < 0.5 * halved:
                 halved, waited = merit, 0
             if waited >= self.budget.patience:
-                return Status.STALLED
-            step = self._step(q, chain.jacobian(q)[target.rows], target.error(T_base_tip))
+                return Status.SOLVED if reached else Status.STALLED
+            if iteration == self.budget.iterations:
+                break
+            step = self._step(q, e, tip)
             if not np.isfinite(step).all():
                 return Status.NOT_FINITE
-            q = into_limits(chain, q + step)
+            q = into_limits(self.chain, q + step)
             self.iterations += 1
-        self._note(q, *target.distances(chain.pose(q)))
-        return Status.BUDGET_SPENT
+        return Status.SOLVED if reached else Status.BUDGET_SPENT
 
-    def _step(self, q: Floats, J: Floats, e: Floats) -> Floats:
-        chain = self.problem.chain
+    def _step(self, q: Floats, e: Floats, tip: Floats) -> Floats:
+        full = np.ascontiguousarray(self.chain.jacobian(q))
+        aim.shape_rows(self.kind, self.goal, self.weights, tip, e, full)
+        J, e = full[self.bound], e[self.bound]
         uphill = J.T @ e
-        free = ~(((q <= chain.lower) & (uphill < 0.0)) | ((q >= chain.upper) & (uphill > 0.0)))
-        step = np.zeros_like(q)
-        if free.any():
-            step[free] = self.rule(J[:, free], e)
+        held = ((q <= self.chain.lower) & (uphill < 0.0)) | ((q >= self.chain.upper) & (uphill > 0.0))
+        m, step = len(e), np.empty_like(q)
+        self.rule(np.ascontiguousarray(np.where(held, 0.0, J)), e, np.empty((m, m)), np.empty(m), step)
         largest = float(np.abs(step).max())
         return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
 
-    def _note(self, q: Floats, position: float, rotation: float | None) -> float:
-        """Errors in units of their tolerances, the larger one; 1 or less is solved."""
-        tolerances = self.problem.tolerances
-        merit = max(_ratio(position, tolerances.position), _ratio(rotation or 0.0, tolerances.rotation))
+    def _note(self, q: Floats, e: Floats, T_base_tip: pin.SE3) -> tuple[float, bool]:
+        """The larger weighted error in units of its tolerance, and whether the target is reached."""
+        weighted = self.weights * e
+        merit = max(
+            _ratio(float(np.linalg.norm(weighted[:3])), self.tolerances.position),
+            _ratio(float(np.linalg.norm(weighted[3:])), self.tolerances.rotation),
+        )
         if merit < self.best_merit or not self.best_q.size:
             self.best_q, self.best_merit = q, merit
+        position, rotation = errors(
+            self.kind, self.goal, self.target.counts, T_base_tip.rotation, T_base_tip.translation
+        )
         if self.keep_trace:
-            self.rows.append((q, position, math.nan if rotation is None else rotation, self.starts - 1))
-        return merit
+            self.rows.append((q, position, rotation, self.starts - 1))
+        far = position > REACHED * self.tolerances.position or rotation > REACHED * self.tolerances.rotation
+        return merit, not far
 
     def trace(self) -> Trace:
+        """What was iterated, all starts in one."""
         q, position, rotation, start = zip(*self.rows, strict=True)
         return Trace(np.array(q), np.array(position), np.array(rotation), np.array(start))
 

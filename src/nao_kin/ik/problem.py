@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
-from nao_kin.arrays import Floats, frozen
 from nao_kin.chain import Chain, OutsideLimit, joint_table, outside_limits
+from nao_kin.ik.measure import measure
+from nao_kin.ik.target import KINDS
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from nao_kin.arrays import Floats
     from nao_kin.ik.target import Target
+
+# Problem, Run and IKResult are made for every solve. They are meant to be read only, but not frozen: freezing costs a
+# dataclass as much for each field as a joint's kinematics take.
 
 __all__ = ["IKResult", "Problem", "Run", "Status", "Trace", "judge"]
 
@@ -31,7 +36,7 @@ class Status(enum.Enum):
     NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)
 class Problem:
     """What is wanted of a chain.
 
@@ -67,7 +72,7 @@ class Trace:
             array.flags.writeable = False
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)
 class Run:
     """What a solver hands to the judge.
 
@@ -92,7 +97,7 @@ class Run:
     trace: Trace | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)
 class IKResult:
     """A set of joints that the judge measured.
 
@@ -100,7 +105,7 @@ class IKResult:
         problem: What was wanted.
         q: The joints (n,) [rad or m], read-only; the best found if unsolved, always finite.
         status: Why the solver ended.
-        position_error: Distance of the tip to the target [m], measured at `q`.
+        position_error: Distance of the tip to the target [m], measured at `q`; None where it is free.
         rotation_error: Angle to the wanted orientation [rad], measured at `q`; None where it is free.
         outside: Joints outside their ranges.
         run: What the solver reported.
@@ -109,7 +114,7 @@ class IKResult:
     problem: Problem
     q: Floats
     status: Status
-    position_error: float
+    position_error: float | None
     rotation_error: float | None
     outside: tuple[OutsideLimit, ...]
     run: Run = field(repr=False)
@@ -142,9 +147,9 @@ class IKResult:
     @property
     def message(self) -> str:
         """The status with the measured errors, for people."""
-        parts = [self.status.value, f"Position error {self.position_error:.3g} m"]
-        if self.rotation_error is not None:
-            parts[-1] += f", rotation error {self.rotation_error:.3g} rad"
+        errors = [] if self.position_error is None else [f"position error {self.position_error:.3g} m"]
+        errors += [] if self.rotation_error is None else [f"rotation error {self.rotation_error:.3g} rad"]
+        parts = [self.status.value, ", ".join(errors).capitalize()]
         parts[-1] += f" after {_count(self.run.iterations, 'iteration')} from {_count(self.run.starts, 'start')}."
         if self.status is Status.OUT_OF_REACH:
             parts.append(f"It misses by at least {self.run.misses_by:.3g} m.")
@@ -163,24 +168,33 @@ class IKResult:
         return joint_table(self.problem.chain, self.q, self.status.name, self.message)._repr_html_()
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
 def judge(problem: Problem, run: Run) -> IKResult:
     """Measures the returned joints with the chain's own forward kinematics; only this may say `Status.SOLVED`."""
-    q = run.q.copy()
-    finite = bool(np.isfinite(q).all())
-    if not finite:
-        q = np.nan_to_num(q, nan=0.0, posinf=0.0, neginf=0.0)
-    position, rotation = problem.target.distances(problem.chain.pose(q))
-    outside = outside_limits(problem.chain, q, problem.tolerances.limits)
-    reached = position <= problem.tolerances.position and (rotation or 0.0) <= problem.tolerances.rotation
-    if not finite:
-        status = Status.NOT_FINITE
-    elif reached:
-        status = Status.OUTSIDE_LIMITS if outside else Status.SOLVED
-    else:
-        # A claim of success that the measurement does not confirm is a solver that stopped short of it.
-        status = Status.STALLED if run.ended in (Status.SOLVED, Status.OUTSIDE_LIMITS) else run.ended
-    return IKResult(problem, frozen(q), status, position, rotation, outside, run)
+    chain, target, tolerances, q = problem.chain, problem.target, problem.tolerances, run.q
+    ended = run.ended
+    R, p = chain.tip_at(q)
+    position, rotation, inside = measure(
+        KINDS[target.kind], target.goal, target.counts, R, p, q, chain.lower, chain.upper, tolerances.limits
+    )
+    outside: tuple[OutsideLimit, ...] = ()
+    if not inside or chain.limit_rules:
+        if not np.isfinite(q).all():
+            finite = np.nan_to_num(q, nan=0.0, posinf=0.0, neginf=0.0)
+            return judge(problem, replace(run, q=finite, ended=Status.NOT_FINITE))
+        outside = outside_limits(chain, q, tolerances.limits)
+    # Comparisons with NaN, which stands for an error that the target leaves free, are false.
+    reached = not (position > tolerances.position or rotation > tolerances.rotation)
+    if reached and ended is not Status.NOT_FINITE:
+        ended = Status.OUTSIDE_LIMITS if outside else Status.SOLVED
+    elif ended is Status.SOLVED or ended is Status.OUTSIDE_LIMITS:
+        ended = Status.STALLED  # a claim that the measurement does not confirm: a solver that stopped short of it
+    q.flags.writeable = False
+    return IKResult(problem, q, ended, _or_none(position), _or_none(rotation), outside, run)
+
+
+def _or_none(error: float) -> float | None:
+    return None if error != error else error
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -1,31 +1,47 @@
-"""Update rules: from the Jacobian's rows and the error to a joint step, one function a method.
+"""Update rules: from the Jacobian and the error to a joint step, one function a method, each written once.
 
-J is (m, n), the error e is (m,) with J · Δq ≈ e [m, rad], and the step Δq is (n,) [rad or m].
+The reference loop and the compiled loop call the same functions. J is (m, n), the error e is (m,) with J · Δq ≈ e
+[m, rad], and the step Δq (n,) [rad or m] is written to `step`. A (m, m) and y (m,) are scratch. A held joint has a zero
+column in J, and every rule leaves it where it is.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
+from nao_kin.kernels.linear import add_to_diagonal, dot, leaf_jit, solve_positive, times_own_transpose, transpose_times
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
 
-__all__ = ["levenberg_marquardt"]
+__all__ = ["LEVENBERG_MARQUARDT", "levenberg_marquardt", "update"]
 
-DAMPING = 0.05
+LEVENBERG_MARQUARDT: Final = 0
+
+DAMPING: Final = 0.05
 """λ² per squared error. Chan's usual 0.5 needs half as many iterations again on a UR5; 0.02 to 0.1 do equally well."""
 
+LEAST_DAMPING: Final = 1e-12
+"""Keeps J Jᵀ + λ² 1 definite in double precision at a singularity; joints that move the tip by more do not feel it."""
 
-def levenberg_marquardt(J: Floats, e: Floats) -> Floats:
+
+@leaf_jit
+def levenberg_marquardt(J: Floats, e: Floats, A: Floats, y: Floats, step: Floats) -> None:
     """Error-damped least squares, Δq = Jᵀ (J Jᵀ + λ² 1)⁻¹ e = (Jᵀ J + λ² 1)⁻¹ Jᵀ e, with λ² proportional to |e|².
 
-    Far away the damping keeps steps small, near the target it vanishes and the step becomes Newton's.
+    Far away the damping keeps steps small, near the target it vanishes and the step becomes Newton's. The first form
+    is the one in the source; it also stays small where joints are many.
 
     Source: S. K. Chan and P. D. Lawrence, "General inverse kinematics with the error damped pseudoinverse", 1988.
     """
-    A = J @ J.T
-    # The second term is rounding's size: it keeps A definite at a singularity.
-    A[np.diag_indices_from(A)] += DAMPING * (e @ e) + 1e-15 * np.trace(A) + 1e-300
-    return (J.T @ np.linalg.solve(A, e)).astype(np.float64, copy=False)
+    times_own_transpose(J, A)
+    add_to_diagonal(A, DAMPING * dot(e, e) + LEAST_DAMPING)
+    solve_positive(A, e, y)
+    transpose_times(J, y, step)
+
+
+@leaf_jit
+def update(rule: int, J: Floats, e: Floats, A: Floats, y: Floats, step: Floats) -> None:
+    """The rule with this code; codes instead of functions as arguments, which would not survive numba's cache."""
+    if rule == LEVENBERG_MARQUARDT:
+        levenberg_marquardt(J, e, A, y, step)

@@ -1,0 +1,254 @@
+"""Many targets at once: the compiled loop on all cores, chunk by chunk, every row measured again."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
+
+import numpy as np
+
+from nao_kin.arrays import rows
+from nao_kin.errors import AuditError, InvalidInputError
+from nao_kin.ik import descent
+from nao_kin.ik.compiled import solve_goals
+from nao_kin.ik.measure import measure_many
+from nao_kin.ik.methods import prepared, start_of
+from nao_kin.ik.problem import Problem, Run, Status, judge
+from nao_kin.ik.target import KINDS, Target
+from nao_kin.table import Column, Table
+from nao_kin.tolerances import TOLERANCES, Tolerances
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from nao_kin.arrays import Floats
+    from nao_kin.chain import Chain
+    from nao_kin.ik.loop import Budget
+
+__all__ = ["BatchResult", "solve_batch"]
+
+CHUNK: Final = 1 << 16
+"""Targets worked on at a time: scratch memory does not grow with the batch."""
+
+AUDITED: Final = 64
+"""Rows of a batch that are measured a third time, by the chain itself; or a hundredth of them, if that is more."""
+
+AUDIT_TOLERANCE: Final = 1e-9
+"""How far two forward kinematics of the same joints may be apart [m, and in entries of the rotation]."""
+
+_LONG: Final = 500_000  # targets from which on a bar shows the progress on a terminal
+_STATUSES: Final = tuple(Status)
+
+
+@dataclass(eq=False, slots=True)
+class BatchResult:
+    """Joints for many targets, each row measured again; rows are in the order of the targets.
+
+    Attributes:
+        chain: The chain.
+        q: Joints (N, n) [rad or m]; the best found where unsolved, always finite.
+        codes: Why each row ended (N,), numbers of `Status` members in their order.
+        position_error: Distances of the tips to the targets [m] (N,), measured at `q`; NaN where free.
+        rotation_error: Angles to the wanted orientations [rad] (N,), measured at `q`; NaN where free.
+        iterations: Iterations over all starts of a row (N,).
+    """
+
+    chain: Chain
+    q: Floats
+    codes: NDArray[np.int8]
+    position_error: Floats
+    rotation_error: Floats
+    iterations: NDArray[np.int32]
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Whether each row is within tolerance and limits (N,)."""
+        return np.asarray(self.codes == _STATUSES.index(Status.SOLVED))
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """Why each row ended (N,), `Status` members."""
+        return np.array(_STATUSES, dtype=object)[self.codes]
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("A BatchResult is not a truth value: ask for result.solved.all().")
+
+    def counts(self) -> dict[Status, int]:
+        """How many rows ended for which reason."""
+        found = np.bincount(self.codes, minlength=len(_STATUSES))
+        return {status: int(count) for status, count in zip(_STATUSES, found, strict=True) if count}
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{count} {status.name}" for status, count in self.counts().items())
+        return f"<BatchResult of {len(self)}: {told or 'nothing'}>"
+
+    def _repr_html_(self) -> str:
+        cells = tuple((status.name, str(count), status.value) for status, count in self.counts().items())
+        columns = (Column("status"), Column("rows", number=True), Column("meaning"))
+        return Table(columns, cells, title=f"{len(self)} targets of {self.chain.name}")._repr_html_()
+
+
+def solve_batch(
+    chain: Chain,
+    targets: ArrayLike | Sequence[Target],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    audit: Literal["sample", "all"] = "sample",
+) -> BatchResult:
+    """Solves for many targets on all cores; a row is what `nao_kin.solve` would give, to the last bit.
+
+    The result does not depend on the order of the targets or on the number of threads. Every row is measured again by
+    a second compiled forward kinematics, and a seeded sample (``audit="all"``: every row) by `chain.pose` too.
+
+    Args:
+        chain: The chain.
+        targets: Poses (N, 4, 4), positions (N, 3) [m], or `Target` objects of one kind with the same weights.
+        q0: Start of all rows (n,) or a posture, or one start a row (N, n). By default all zeros, moved inside.
+        method: A name in `nao_kin.METHODS`.
+        tolerances: When a target counts as reached.
+        budget: How long to try for each.
+        seed: For the stored starts and the sample.
+        audit: ``"sample"`` or ``"all"``.
+
+    Raises:
+        InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds.
+        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
+        AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
+    """
+    first, goals = _goals(targets)
+    if audit not in ("sample", "all"):
+        raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
+    ready = prepared(Problem(chain, first, tolerances), method, budget, seed)
+    starts = _starts(chain, q0, len(goals), ready.neutral)
+    n, N = len(chain.joints), len(goals)
+    result = BatchResult(
+        chain, np.empty((N, n)), np.empty(N, np.int8), np.empty(N), np.empty(N), np.empty(N, dtype=np.int32)
+    )
+    for chunk in _chunks(N):
+        own = starts[chunk] if len(starts) > 1 else starts
+        outcomes = solve_goals(ready.tables, ready.settings, goals[chunk], np.ascontiguousarray(own))
+        _refuse(outcomes, chunk.start)
+        _judge(first, tolerances, goals[chunk], outcomes, result, chunk)
+    _audit(result, first, goals, tolerances, np.random.default_rng(seed), everything=audit == "all")
+    return result
+
+
+def _goals(targets: ArrayLike | Sequence[Target]) -> tuple[Target, Floats]:
+    """A target that says the kind, and the goals (N, 4, 4) of all."""
+    if isinstance(targets, Sequence) and len(targets) and all(isinstance(t, Target) for t in targets):
+        wanted: list[Any] = list(targets)
+        kinds = {(t.kind, t.weights) for t in wanted}
+        if len(kinds) > 1:
+            raise InvalidInputError("targets", "targets of one kind with the same weights", f"{len(kinds)} sorts")
+        return wanted[0], np.ascontiguousarray([t.goal for t in wanted])
+    array = np.asarray(targets) if not isinstance(targets, Sequence) or len(targets) else np.empty((0, 4, 4))
+    if array.ndim == 3 and array.shape[1:] == (4, 4):
+        flat = rows(array.reshape(len(array), 16), "targets", 16)
+        return Target("pose", np.eye(4)), flat.reshape(-1, 4, 4)
+    if array.ndim == 2 and array.shape[1] == 3:
+        goals = np.tile(np.eye(4), (len(array), 1, 1))
+        goals[:, :3, 3] = rows(array, "targets", 3)
+        return Target("position", np.eye(4)), goals
+    raise InvalidInputError("targets", "(N, 4, 4) poses, (N, 3) positions or Target objects", f"shape {array.shape}")
+
+
+def _starts(chain: Chain, q0: ArrayLike | Mapping[str, float] | None, count: int, neutral: Floats) -> Floats:
+    if q0 is None:
+        return neutral[None, :]
+    if not isinstance(q0, Mapping) and np.ndim(q0) == 2:
+        starts = rows(q0, "q0", len(chain.joints))
+        if len(starts) != count:
+            raise InvalidInputError("q0", f"one start, or one for each of the {count} targets", f"{len(starts)}")
+        return starts
+    return np.array(start_of(chain, q0), dtype=np.float64)[None, :]
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    chunks = [slice(i, min(i + CHUNK, count)) for i in range(0, count, CHUNK)]
+    if count < _LONG or not sys.stderr.isatty():
+        yield from chunks
+        return
+    from rich.console import Console
+    from rich.progress import track
+
+    yield from track(chunks, description=f"{count} targets", console=Console(stderr=True), transient=True)
+
+
+def _refuse(outcomes: Floats, offset: int) -> None:
+    """Raises for the first row whose target or start made no sense."""
+    bad = np.flatnonzero(outcomes[:, descent.CODE] < 0.0)
+    if not len(bad):
+        return
+    row, amount = offset + int(bad[0]), float(outcomes[bad[0], descent.AMOUNT])
+    if outcomes[bad[0], descent.CODE] == descent.BAD_START:
+        raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
+    raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", f"a violation of {amount:.2g}")
+
+
+def _judge(
+    first: Target, tolerances: Tolerances, goals: Floats, outcomes: Floats, result: BatchResult, chunk: slice
+) -> None:
+    """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
+    from nao_kin.kernels.audit import tips
+
+    chain, q = result.chain, np.ascontiguousarray(outcomes[:, descent.OUTCOME :])
+    position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
+    reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
+    inside = _inside(chain, q, tolerances.limits)
+    codes = outcomes[:, descent.CODE].astype(np.int8)
+    ended = np.array([_STATUSES.index(status) for status in _ENDED], dtype=np.int8)[codes]
+    ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
+    ended[reached & inside] = _STATUSES.index(Status.SOLVED)
+    ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
+    result.q[chunk], result.codes[chunk] = q, ended
+    result.position_error[chunk], result.rotation_error[chunk] = position, rotation
+    result.iterations[chunk] = outcomes[:, descent.ITERATIONS]
+
+
+_ENDED = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
+
+
+def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
+    inside = ((q >= chain.lower - tolerance) & (q <= chain.upper + tolerance)).all(axis=1)
+    index = {name: i for i, name in enumerate(chain.joint_names)}
+    for rule in chain.limit_rules:
+        by, limited = q[:, index[rule.by]], q[:, index[rule.joint]]
+        value = np.abs(by) if rule.even else by
+        lower, upper = np.interp(value, rule.at, rule.lower), np.interp(value, rule.at, rule.upper)
+        inside &= (limited >= lower - tolerance) & (limited <= upper + tolerance)
+    return np.asarray(inside)
+
+
+def _audit(
+    result: BatchResult,
+    first: Target,
+    goals: Floats,
+    tolerances: Tolerances,
+    rng: np.random.Generator,
+    *,
+    everything: bool,
+) -> None:
+    """Measures rows by the chain itself; one disagreement fails the call."""
+    N = len(result)
+    count = N if everything else min(N, max(AUDITED, N // 100))
+    for i in range(N) if everything else rng.choice(N, count, replace=False) if N else ():
+        problem = Problem(result.chain, Target(first.kind, goals[i], first.weights), tolerances)
+        measured = judge(problem, Run(result.q[i].copy(), _STATUSES[result.codes[i]]))
+        errors = (
+            (measured.position_error, result.position_error[i]),
+            (measured.rotation_error, result.rotation_error[i]),
+        )
+        far = any(a is not None and not abs(a - b) <= AUDIT_TOLERANCE for a, b in errors)
+        if far or measured.solved != bool(result.solved[i]):
+            raise AuditError(int(i), str(measured), f"position {errors[0][1]:.3g} m, rotation {errors[1][1]:.3g} rad")

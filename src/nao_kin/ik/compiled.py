@@ -1,0 +1,201 @@
+"""The compiled loop as Python calls it: a chain's tables, settings, one target or many, outcomes turned into runs."""
+
+from __future__ import annotations
+
+import weakref
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik import aim, descent
+from nao_kin.ik.problem import Run, Status, Trace
+from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.starts import make_starts
+from nao_kin.ik.target import KINDS
+from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.motion import packed_joints
+from nao_kin.se3 import ROTATION_TOLERANCE
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from nao_kin.arrays import Floats
+    from nao_kin.chain import Chain
+    from nao_kin.ik.loop import Budget
+    from nao_kin.tolerances import Tolerances
+
+__all__ = ["KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
+
+_ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
+_SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
+_NO_TRACE: Final = np.empty((0, 1))
+_ENDED: Final = {
+    descent.SOLVED: Status.SOLVED,
+    descent.STALLED: Status.STALLED,
+    descent.BUDGET_SPENT: Status.BUDGET_SPENT,
+    descent.OUT_OF_REACH: Status.OUT_OF_REACH,
+    descent.NOT_FINITE: Status.NOT_FINITE,
+}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Tables:
+    """A chain as the compiled loop reads it; see `nao_kin.ik.descent.solve_one` for the arrays.
+
+    Attributes:
+        joints: Placements and joints (m + 1, 16).
+        limits: Least and greatest joint values (2, n).
+        coupled: Coupled limits (k, 7).
+        stored: Stored starts with their tips (K, n + 12).
+        closeness: Weight of squared distances among the stored starts [1/m²].
+        shell: Centre of the reach (3), least and greatest distance from it (5,) [m].
+        scratch_size: Numbers of scratch memory that a solve needs.
+    """
+
+    joints: Floats
+    limits: Floats
+    coupled: Floats
+    stored: Floats
+    closeness: float
+    shell: Floats
+    scratch_size: int
+
+
+_TABLES: weakref.WeakKeyDictionary[Chain, dict[int, Tables]] = weakref.WeakKeyDictionary()
+
+
+def tables_of(chain: Chain, seed: int = 0) -> Tables:
+    """The tables of a chain, made once a seed; the seed decides the stored starts."""
+    try:
+        return _TABLES[chain][seed]
+    except KeyError:
+        of_chain = _TABLES.setdefault(chain, {})
+        if len(of_chain) >= _SEEDS_KEPT:
+            of_chain.clear()
+        tables = of_chain[seed] = _tables(chain, seed)
+        return tables
+
+
+def _tables(chain: Chain, seed: int) -> Tables:
+    starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
+    joints = packed_joints(chain.joint_path)
+    return Tables(
+        joints=joints,
+        limits=np.array([chain.lower, chain.upper]),
+        coupled=packed_rules(chain.limit_rules, chain.joint_names),
+        stored=starts.table,
+        closeness=starts.closeness,
+        shell=np.array([*shell.centre, shell.inner * (1.0 - _ROUNDING), shell.outer * (1.0 + _ROUNDING)]),
+        scratch_size=descent.scratch_size(joints, starts.table),
+    )
+
+
+def settings_of(
+    tables: Tables,
+    kind: int,
+    rule: int,
+    budget: Budget,
+    tolerances: Tolerances,
+    weights: ArrayLike = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
+    from_stored: bool = False,
+) -> Floats:
+    """What is wanted and how long to try, as one array; make it once for many calls.
+
+    Args:
+        tables: The chain.
+        kind: Kind of target, a value of `KINDS`.
+        rule: Code of the update rule, see `nao_kin.ik.rules`.
+        budget: How long to try.
+        tolerances: When the target counts as reached.
+        weights: Weight of each base axis (6,), position x y z, rotation x y z; 0 leaves it free. Other weights than 1
+            decide which compromise is found where not all can be met, never what counts as reached.
+        from_stored: Start at the stored configuration nearest to the target, and not at q0.
+    """
+    settings = np.zeros(descent.SETTINGS)
+    settings[descent.KIND], settings[descent.RULE] = kind, rule
+    settings[descent.MAX_ITERATIONS], settings[descent.RESTARTS] = budget.iterations, budget.restarts
+    settings[descent.PATIENCE], settings[descent.LARGEST_STEP] = budget.patience, budget.largest_step
+    settings[descent.FROM_STORED] = from_stored
+    settings[descent.POSITION_TOLERANCE], settings[descent.ROTATION_TOLERANCE] = (
+        tolerances.position,
+        tolerances.rotation,
+    )
+    settings[descent.GOAL_TOLERANCE] = ROTATION_TOLERANCE
+    settings[descent.WEIGHTS : descent.WEIGHTS + 6] = weights
+    settings[descent.CENTRE : descent.OUTER + 1] = tables.shell
+    settings[descent.CLOSENESS] = tables.closeness
+    return settings
+
+
+def trace_rows(tables: Tables, budget: Budget) -> Floats:
+    """Room for the longest trace that a budget allows, a row (q, position error, rotation error, start) an iterate."""
+    starts = 1 + min(budget.restarts, len(tables.stored))
+    return np.empty(((budget.iterations + 1) * starts, tables.limits.shape[1] + 3))
+
+
+def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats = _NO_TRACE) -> Floats:
+    """Solves for one target; returns the outcome, see `nao_kin.ik.descent`. Nothing passed in is changed but `trace`.
+
+    Args:
+        tables: The chain.
+        settings: From `settings_of`.
+        goal: The target (4, 4), C-contiguous float64.
+        q0: Start (n,), C-contiguous float64.
+        trace: From `trace_rows`.
+    """
+    outcome = np.empty(descent.OUTCOME + tables.limits.shape[1])
+    scratch = np.empty(tables.scratch_size)
+    t = tables
+    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch)
+    return outcome
+
+
+def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
+    """Solves for many targets (N, 4, 4) on all cores, from q0 (N, n), or (1, n) for all; outcomes in rows.
+
+    An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.
+    """
+    t = tables
+    outcomes = np.empty((len(goals), descent.OUTCOME + t.limits.shape[1]))
+    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.scratch_size)
+    return outcomes
+
+
+def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
+    """An outcome as the judge takes it.
+
+    Args:
+        outcome: From `solve_goal`, or a row from `solve_goals`.
+        kind: Kind of target, a value of `KINDS`.
+        trace: The rows that `solve_goal` filled.
+
+    Raises:
+        InvalidInputError: The target or the start made no sense; carries the size of the violation.
+    """
+    _, _, code, iterations, starts, moved, amount, *_ = outcome.tolist()
+    if code < 0.0:
+        raise _refusal(int(code), amount)
+    return Run(
+        outcome[descent.OUTCOME :],
+        _ENDED[code],
+        int(iterations),
+        int(starts),
+        moved != 0.0,
+        amount,
+        "",
+        None if trace is None else _trace(trace[: int(iterations + starts)], kind),
+    )
+
+
+def _refusal(code: int, amount: float) -> InvalidInputError:
+    if code == descent.BAD_START:
+        return InvalidInputError("q0", "finite numbers", f"another at index {int(amount)}")
+    got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
+    return InvalidInputError("target", "a rigid pose, a position, or unit axes", got)
+
+
+def _trace(rows: Floats, kind: int) -> Trace:
+    rotation = np.full(len(rows), np.nan) if kind == aim.POSITION else rows[:, -2].copy()
+    return Trace(rows[:, :-3].copy(), rows[:, -3].copy(), rotation, rows[:, -1].astype(np.int64))

@@ -1,0 +1,314 @@
+"""The compiled loop: the reference loop's iteration on flat arrays, for one target or many.
+
+Python hands over plain arrays, because every tuple or object costs a call as much as an iteration; what their entries
+mean stands below. There is no random state: an outcome depends on the arguments only, not on other targets or threads.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, goal_violation, raw_error, shape_rows
+from nao_kin.ik.loop import POLISHED, REACHED
+from nao_kin.ik.rules import update
+from nao_kin.kernels.compiling import parallel_jit, prange
+from nao_kin.kernels.limits import hold, move_inside
+from nao_kin.kernels.linear import leaf_jit
+from nao_kin.kernels.motion import jacobian, place
+
+if TYPE_CHECKING:
+    from nao_kin.arrays import Floats
+
+# Entries of an outcome (OUTCOME + n,): errors of the best joints [m], [rad], why the run ended, iterations over all
+# starts, starts, whether the caller's start was moved into the limits, an amount that belongs to the code, the larger
+# error in units of its tolerance; the best joints follow.
+POSITION_ERROR, ROTATION_ERROR, CODE, ITERATIONS, STARTS, START_MOVED, AMOUNT, MERIT, OUTCOME = range(9)
+
+# Codes. The amount is by how much the target misses the reach [m], by how much the goal is none (see `goal_violation`),
+# or which joint of the start is not finite.
+SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE = range(5)
+BAD_GOAL, BAD_START = -1, -2
+
+# Entries of the settings (SETTINGS,): kind of target, update rule, the budget's four, whether the first start is the
+# nearest stored one instead of the caller's, tolerances [m], [rad], largest violation of a goal that is still
+# one, closeness of the stored starts [1/m²], reach shell (centre (3), least and greatest distance) [m], weight of each
+# base axis (6).
+KIND, RULE, MAX_ITERATIONS, RESTARTS, PATIENCE, LARGEST_STEP, FROM_STORED = range(7)
+POSITION_TOLERANCE, ROTATION_TOLERANCE, GOAL_TOLERANCE, CLOSENESS, CENTRE, INNER, OUTER = 7, 8, 9, 10, 11, 14, 15
+WEIGHTS, SETTINGS = 16, 22
+
+_TIP: Final = 12
+
+
+def scratch_size(joints: Floats, stored: Floats) -> int:
+    """Numbers of scratch memory that `solve_one` needs for a chain (m + 1, 16) with stored starts (K, n + 12)."""
+    m, n = joints.shape[0] - 1, stored.shape[1] - _TIP
+    return int(2 * n + 6 * m + _TIP + 6 + 6 * n + 6 + 36 + 16 + stored.shape[0])
+
+
+@leaf_jit
+def solve_one(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    stored: Floats,
+    settings: Floats,
+    goal: Floats,
+    q0: Floats,
+    outcome: Floats,
+    trace: Floats,
+    scratch: Floats,
+) -> None:
+    """Runs starts until one reaches the target or the budget is spent.
+
+    Args:
+        joints: The chain (m + 1, 16), see `nao_kin.kernels.motion`.
+        limits: Least and greatest joint values (2, n).
+        coupled: Coupled limits (k, 7), see `nao_kin.kernels.limits`.
+        stored: Stored starts with their tips (K, n + 12), see `nao_kin.ik.starts`.
+        settings: What is wanted and how long to try (SETTINGS,).
+        goal: The target (4, 4), see `nao_kin.ik.aim`.
+        q0: The caller's start (n,).
+        outcome: Written (OUTCOME + n,).
+        trace: Written, a row (q, position error, rotation error, number of the start) (n + 3,) an iterate, as many as
+            iterations and starts together; what does not fit is left out.
+        scratch: Memory (`scratch_size`,).
+    """
+    if not _begin(limits, coupled, settings, goal, q0, outcome, scratch):
+        return
+    distances = scratch[scratch.shape[0] - stored.shape[0] :]
+    misses_by = _misses_by(settings, goal)
+    if misses_by > 0.0:  # then the nearest place that link lengths allow is what to head for
+        near = scratch[scratch.shape[0] - stored.shape[0] - 16 : scratch.shape[0] - stored.shape[0]].reshape(4, 4)
+        _to_shell(settings, goal, near)
+        goal = near
+    if settings[FROM_STORED] != 0.0:
+        _measure_starts(settings, goal, stored, distances)
+        _take_nearest(stored, distances, scratch)
+    code = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch)
+    if code != SOLVED and misses_by == 0.0 and settings[FROM_STORED] == 0.0:
+        _measure_starts(settings, goal, stored, distances)
+    starts = 1.0 + min(settings[RESTARTS], stored.shape[0] - settings[FROM_STORED])
+    while code != SOLVED and misses_by == 0.0 and outcome[STARTS] < starts:
+        _take_nearest(stored, distances, scratch)
+        again = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch)
+        # One start that was still getting closer is worth a word: a larger budget may help.
+        if not (again == STALLED and code == BUDGET_SPENT):
+            code = again
+    outcome[CODE] = code if misses_by == 0.0 else OUT_OF_REACH
+    outcome[AMOUNT] = misses_by
+
+
+@parallel_jit
+def solve_many(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    stored: Floats,
+    settings: Floats,
+    goals: Floats,
+    q0: Floats,
+    outcomes: Floats,
+    scratch_size: int,
+) -> None:
+    """`solve_one` for each goal (N, 4, 4), outcomes (N, OUTCOME + n), from q0 (N, n), or (1, n) for all."""
+    nothing = np.empty((0, 1))
+    for i in prange(goals.shape[0]):
+        start = q0[np.int64(i) if q0.shape[0] > 1 else 0]
+        scratch = np.empty(scratch_size)
+        solve_one(joints, limits, coupled, stored, settings, goals[i], start, outcomes[i], nothing, scratch)
+
+
+@leaf_jit
+def _begin(
+    limits: Floats, coupled: Floats, settings: Floats, goal: Floats, q0: Floats, outcome: Floats, scratch: Floats
+) -> bool:
+    """Whether goal and start make sense; the start, moved into the limits, goes to `scratch` and into the outcome."""
+    n = q0.shape[0]
+    for k in range(OUTCOME):
+        outcome[k] = 0.0
+    for k in range(n):
+        scratch[k] = q0[k] if abs(q0[k]) < math.inf else 0.0
+    outcome[START_MOVED] = 1.0 if move_inside(scratch[:n], limits, coupled) else 0.0
+    outcome[MERIT] = outcome[POSITION_ERROR] = outcome[ROTATION_ERROR] = math.inf
+    for k in range(n):
+        outcome[OUTCOME + k] = scratch[k]  # to be returned should no error ever be finite
+        if not abs(q0[k]) < math.inf:
+            outcome[CODE], outcome[AMOUNT] = BAD_START, k
+    violation = goal_violation(int(settings[KIND]), goal)
+    if not violation <= settings[GOAL_TOLERANCE]:
+        outcome[CODE], outcome[AMOUNT] = BAD_GOAL, violation
+    return bool(outcome[CODE] == SOLVED)
+
+
+@leaf_jit
+def _descend(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    settings: Floats,
+    goal: Floats,
+    outcome: Floats,
+    trace: Floats,
+    scratch: Floats,
+) -> int:
+    """Iterates from the start in `scratch`; the best joints of all starts go to the outcome. Returns a code."""
+    m, n, kind = joints.shape[0] - 1, limits.shape[1], int(settings[KIND])
+    q, step = scratch[:n], scratch[n : 2 * n]
+    axes, rest = scratch[2 * n : 2 * n + 6 * m].reshape(m, 6), scratch[2 * n + 6 * m :]
+    tip, raw, full = rest[:_TIP], rest[_TIP : _TIP + 6], rest[_TIP + 6 : _TIP + 6 + 6 * n].reshape(6, n)
+    rest = rest[_TIP + 6 + 6 * n :]
+    # The rows that the target binds: those of the position, of the rotation, or all.
+    first, last = 3 if kind == ORIENTATION else 0, 3 if kind == POSITION else 6
+    rows = last - first
+    e, J, y, A = raw[first:last], full[first:last], rest[:rows], rest[6 : 6 + rows * rows].reshape(rows, rows)
+    previous, halved, waited, reached = math.inf, math.inf, 0, False
+    allowed = int(settings[MAX_ITERATIONS])
+    outcome[STARTS] += 1.0
+    for iteration in range(allowed + 1):
+        place(joints, q, axes, tip)
+        raw_error(kind, goal, tip, raw)
+        merit, within = _note(settings, q, raw, outcome, trace)
+        reached = reached or within
+        if reached and (merit <= POLISHED or merit >= previous):
+            return SOLVED
+        previous, waited = merit, waited + 1
+        if merit < 0.5 * halved:
+            halved, waited = merit, 0
+        if waited >= settings[PATIENCE]:
+            return SOLVED if reached else STALLED
+        if iteration == allowed:
+            break
+        jacobian(joints, axes, tip, full)
+        shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
+        hold(limits, q, e, J)
+        update(int(settings[RULE]), J, e, A, y, step)
+        if not _take_step(step, settings[LARGEST_STEP], q):
+            return NOT_FINITE
+        move_inside(q, limits, coupled)
+        outcome[ITERATIONS] += 1.0
+    return SOLVED if reached else BUDGET_SPENT
+
+
+@leaf_jit
+def _note(settings: Floats, q: Floats, raw: Floats, outcome: Floats, trace: Floats) -> tuple[float, bool]:
+    """Remembers the best joints and the trace; the weighted error in units of its tolerance, and whether within it.
+
+    Whether the target is reached is asked of the errors themselves, on every axis that is not left free.
+    """
+    n = q.shape[0]
+    position, rotation, weighted_position, weighted_rotation = 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        w, v = settings[WEIGHTS + i], settings[WEIGHTS + 3 + i]
+        weighted_position += (w * raw[i]) ** 2
+        weighted_rotation += (v * raw[3 + i]) ** 2
+        position += raw[i] ** 2 if w > 0.0 else 0.0
+        rotation += raw[3 + i] ** 2 if v > 0.0 else 0.0
+    position, rotation = math.sqrt(position), math.sqrt(rotation)
+    merit = max(
+        _ratio(math.sqrt(weighted_position), settings[POSITION_TOLERANCE]),
+        _ratio(math.sqrt(weighted_rotation), settings[ROTATION_TOLERANCE]),
+    )
+    if merit < outcome[MERIT]:
+        outcome[MERIT], outcome[POSITION_ERROR], outcome[ROTATION_ERROR] = merit, position, rotation
+        for k in range(n):
+            outcome[OUTCOME + k] = q[k]
+    row = int(outcome[ITERATIONS] + outcome[STARTS]) - 1
+    if row < trace.shape[0]:
+        for k in range(n):
+            trace[row, k] = q[k]
+        trace[row, n], trace[row, n + 1], trace[row, n + 2] = position, rotation, outcome[STARTS] - 1.0
+    within = position <= REACHED * settings[POSITION_TOLERANCE] and rotation <= REACHED * settings[ROTATION_TOLERANCE]
+    return merit, within
+
+
+@leaf_jit
+def _ratio(error: float, tolerance: float) -> float:
+    if tolerance > 0.0:
+        return error / tolerance
+    return 0.0 if error == 0.0 else math.inf
+
+
+@leaf_jit
+def _take_step(step: Floats, largest_step: float, q: Floats) -> bool:
+    """Adds the step to q, scaled down to the largest one allowed; False, and q as it was, where it is not finite."""
+    largest, nothing = 0.0, 0.0
+    for k in range(q.shape[0]):
+        largest = max(largest, abs(step[k]))
+        nothing += 0.0 * step[k]  # NaN of NaN and of infinity
+    if nothing != 0.0:
+        return False
+    scale = largest_step / largest if largest > largest_step else 1.0
+    for k in range(q.shape[0]):
+        q[k] += scale * step[k]
+    return True
+
+
+@leaf_jit
+def _measure_starts(settings: Floats, goal: Floats, stored: Floats, distances: Floats) -> None:
+    """How far the tip of each stored start (K, n + 12) is from the goal, in what the kind binds."""
+    n, kind, closeness = stored.shape[1] - _TIP, int(settings[KIND]), settings[CLOSENESS]
+    for k in range(stored.shape[0]):
+        total = 0.0
+        if kind != ORIENTATION:
+            for i in range(3):
+                total += closeness * (stored[k, n + 9 + i] - goal[i, 3]) ** 2
+        if kind not in (POSITION, POINTING):
+            for i in range(3):
+                for j in range(3):
+                    total += (stored[k, n + 3 * i + j] - goal[i, j]) ** 2
+        distances[k] = total
+
+
+@leaf_jit
+def _take_nearest(stored: Floats, distances: Floats, scratch: Floats) -> None:
+    """Puts the nearest start not taken before to the front of the scratch memory."""
+    nearest = 0
+    for k in range(1, distances.shape[0]):
+        if distances[k] < distances[nearest]:
+            nearest = k
+    distances[nearest] = math.inf
+    for k in range(stored.shape[1] - _TIP):
+        scratch[k] = stored[nearest, k]
+
+
+@leaf_jit
+def _to_shell(settings: Floats, goal: Floats, near: Floats) -> None:
+    """Writes the goal, its position moved to the nearest point of the reach shell."""
+    distance = _from_centre(settings, goal)
+    scale = min(max(distance, settings[INNER]), settings[OUTER]) / distance if distance > 0.0 else 0.0
+    for i in range(4):
+        for j in range(4):
+            near[i, j] = goal[i, j]
+    for i in range(3):
+        near[i, 3] = settings[CENTRE + i] + scale * (goal[i, 3] - settings[CENTRE + i])
+    if distance == 0.0:
+        near[0, 3] += settings[INNER]
+
+
+@leaf_jit
+def _from_centre(settings: Floats, goal: Floats) -> float:
+    """Distance of the goal from the centre of the shell [m], which does not overflow where its square would."""
+    x, y, z = goal[0, 3] - settings[CENTRE], goal[1, 3] - settings[CENTRE + 1], goal[2, 3] - settings[CENTRE + 2]
+    largest = max(abs(x), abs(y), abs(z))
+    if largest == 0.0:
+        return 0.0
+    x, y, z = x / largest, y / largest, z / largest
+    distance: float = largest * math.sqrt(x * x + y * y + z * z)
+    return distance
+
+
+@leaf_jit
+def _misses_by(settings: Floats, goal: Floats) -> float:
+    """A distance by which the goal certainly misses the reach [m]; 0 within tolerance, or where nothing is proven."""
+    if settings[KIND] == ORIENTATION:
+        return 0.0
+    for i in range(3):
+        if settings[WEIGHTS + i] == 0.0:
+            return 0.0
+    distance = _from_centre(settings, goal)
+    beyond = max(distance - settings[OUTER], settings[INNER] - distance)
+    return beyond if beyond > settings[POSITION_TOLERANCE] else 0.0

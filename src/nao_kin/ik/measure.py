@@ -1,0 +1,125 @@
+"""The judge's own measuring: how far a tip is from its target, written apart from what solvers minimise.
+
+`measure` is compiled for the one result of `solve`; `measure_many` says the same in numpy, for batches.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nao_kin.kernels.compiling import jit
+
+if TYPE_CHECKING:
+    from nao_kin.arrays import Floats
+
+__all__ = ["errors", "measure", "measure_many"]
+
+_POSE, _POSITION, _POINTING, _ORIENTATION = 0, 1, 2, 3
+
+
+@jit
+def measure(
+    kind: int,
+    goal: Floats,
+    counts: int,
+    R: Floats,
+    p: Floats,
+    q: Floats,
+    lower: Floats,
+    upper: Floats,
+    tolerance: float,
+) -> tuple[float, float, bool]:
+    """Errors of a pose, and whether the joints that lead to it are within their ranges.
+
+    Returns the position error [m] and the rotation error [rad] over the axes that count, NaN where the target leaves it
+    free, and whether every joint is finite and in its range, give or take the tolerance.
+
+    The rotation error is the angle between the two orientations, or between the two axes of a pointing target. Where
+    some rotation axes are left free, it is the length of the rest of the rotation vector.
+
+    Args:
+        kind: What is wanted, a value of `nao_kin.ik.target.KINDS`.
+        goal: The target (4, 4), see `nao_kin.ik.target.Target`.
+        counts: Bit i is set where axis i of `nao_kin.ik.target.AXES` counts.
+        R: Rotation of the tip (3, 3).
+        p: Position of the tip (3,) [m].
+        q: Joints (n,) [rad or m].
+        lower: Their least values (n,).
+        upper: Their greatest values (n,).
+        tolerance: How far outside still counts as inside [rad or m].
+    """
+    position, rotation = errors(kind, goal, counts, R, p)
+    for k in range(q.shape[0]):
+        if not (lower[k] - tolerance <= q[k] <= upper[k] + tolerance and abs(q[k]) < math.inf):
+            return position, rotation, False
+    return position, rotation, True
+
+
+@jit
+def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[float, float]:
+    """Position error [m] and rotation error [rad] over the axes that count; see `measure`."""
+    position = math.nan if kind == _ORIENTATION else 0.0
+    for i in range(3):
+        if counts >> i & 1:  # hypot, because the square of a far target would overflow
+            position = math.hypot(position, goal[i, 3] - p[i])
+    if kind == _POSITION:
+        return position, math.nan
+    if kind == _POINTING:
+        cosine, squared = 0.0, 0.0
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            cosine += _now(R, goal, i) * goal[i, 1]
+            squared += (_now(R, goal, j) * goal[k, 1] - _now(R, goal, k) * goal[j, 1]) ** 2
+        return position, math.atan2(math.sqrt(squared), cosine)
+    trace, squared, counted = -1.0, 0.0, 0.0
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        # Twice the sine times the axis, in base axes: the skew part of R_goal Rᵀ.
+        twice = 0.0
+        for a in range(3):
+            trace += goal[i, a] * R[i, a]
+            twice += goal[k, a] * R[j, a] - goal[j, a] * R[k, a]
+        squared += twice * twice
+        if counts >> (3 + i) & 1:
+            counted += twice * twice
+    sine = math.sqrt(squared)
+    angle = math.atan2(sine, trace)
+    if counted == squared:
+        return position, angle
+    if sine > 1e-9:
+        return position, angle * math.sqrt(counted) / sine
+    # No turn at all, or one by exactly π, whose axis the skew part does not tell: then nothing counts as met.
+    return position, 0.0 if trace > 0.0 else angle
+
+
+@jit
+def _now(R: Floats, goal: Floats, i: int) -> float:
+    """Entry i of the pointing axis as it is now, in base axes."""
+    entry: float = R[i, 0] * goal[0, 0] + R[i, 1] * goal[1, 0] + R[i, 2] * goal[2, 0]
+    return entry
+
+
+def measure_many(kind: int, goals: Floats, counts: int, tips: Floats) -> tuple[Floats, Floats]:
+    """`measure` of each goal (N, 4, 4) and tip (N, 4, 4): position errors (N,) [m] and rotation errors (N,) [rad]."""
+    counted_axes = np.array([bool(counts >> i & 1) for i in range(6)])
+    free = np.full(len(goals), np.nan)
+    missing = goals[:, :3, 3] - tips[:, :3, 3]
+    position = free if kind == _ORIENTATION else np.hypot.reduce(missing[:, counted_axes[:3]], axis=1)
+    if kind == _POSITION:
+        return position, free
+    if kind == _POINTING:
+        axes, wanted = np.einsum("nij,nj->ni", tips[:, :3, :3], goals[:, :3, 0]), goals[:, :3, 1]
+        sine = np.linalg.norm(np.cross(axes, wanted), axis=1)
+        return position, np.arctan2(sine, np.einsum("ni,ni->n", axes, wanted))
+    E = np.einsum("nij,nkj->nik", goals[:, :3, :3], tips[:, :3, :3])
+    twice = np.stack([E[:, 2, 1] - E[:, 1, 2], E[:, 0, 2] - E[:, 2, 0], E[:, 1, 0] - E[:, 0, 1]], axis=1)
+    sine, trace = np.linalg.norm(twice, axis=1), np.einsum("nii->n", E) - 1.0
+    angle = np.arctan2(sine, trace)
+    if counted_axes[3:].all():
+        return position, angle
+    counted = np.linalg.norm(twice[:, counted_axes[3:]], axis=1)
+    scaled = angle * counted / np.where(sine > 1e-9, sine, 1.0)
+    return position, np.where(sine > 1e-9, scaled, np.where(trace > 0.0, 0.0, angle))

@@ -1,0 +1,85 @@
+"""Joint limits for compiled loops: moving inside them, coupled ones last, and holding joints that stand at an end.
+
+Limits come as an array (2, n), least values and greatest values. Coupled limits come as one array (k, 7), a row a
+breakpoint: number of the rule, limited column, deciding column, whether only the size of the deciding value counts,
+that value [rad], least and greatest value of the limited joint there [rad].
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nao_kin.kernels.linear import leaf_jit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from nao_kin.arrays import Floats
+    from nao_kin.chain import LimitRule
+
+__all__ = ["hold", "move_inside", "packed_rules"]
+
+
+def packed_rules(rules: Sequence[LimitRule], joint_names: Sequence[str]) -> Floats:
+    """Coupled limits as one array (k, 7), columns counted in `joint_names`."""
+    column = {name: i for i, name in enumerate(joint_names)}
+    rows = [
+        (number, column[rule.joint], column[rule.by], rule.even, at, lower, upper)
+        for number, rule in enumerate(rules)
+        for at, lower, upper in zip(rule.at, rule.lower, rule.upper, strict=True)
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+
+@leaf_jit
+def move_inside(q: Floats, limits: Floats, coupled: Floats) -> bool:
+    """Moves every joint of q (n,) to the nearest end of its range, coupled ranges last; whether any moved."""
+    moved = False
+    for i in range(q.shape[0]):
+        inside = min(max(q[i], limits[0, i]), limits[1, i])
+        moved = moved or inside != q[i]
+        q[i] = inside
+    first = 0
+    while first < coupled.shape[0]:
+        end = first + 1
+        while end < coupled.shape[0] and coupled[end, 0] == coupled[first, 0]:
+            end += 1
+        i, by = int(coupled[first, 1]), int(coupled[first, 2])
+        lower, upper = _coupled_range(coupled, first, end, q[by])
+        inside = min(max(q[i], lower, limits[0, i]), upper, limits[1, i])
+        moved = moved or inside != q[i]
+        q[i] = inside
+        first = end
+    return moved
+
+
+@leaf_jit
+def _coupled_range(coupled: Floats, first: int, end: int, by: float) -> tuple[float, float]:
+    """Range of the limited joint by the breakpoints first ≤ row < end; constant beyond the ends."""
+    value = abs(by) if coupled[first, 3] != 0.0 else by
+    if value <= coupled[first, 4]:
+        return coupled[first, 5], coupled[first, 6]
+    for k in range(first + 1, end):
+        if value < coupled[k, 4]:
+            part = (value - coupled[k - 1, 4]) / (coupled[k, 4] - coupled[k - 1, 4])
+            return (
+                coupled[k - 1, 5] + part * (coupled[k, 5] - coupled[k - 1, 5]),
+                coupled[k - 1, 6] + part * (coupled[k, 6] - coupled[k - 1, 6]),
+            )
+    return coupled[end - 1, 5], coupled[end - 1, 6]
+
+
+@leaf_jit
+def hold(limits: Floats, q: Floats, e: Floats, J: Floats) -> None:
+    """Gives a joint that stands at an end a zero column in J (m, n) where the error e (m,) pushes it further out."""
+    for k in range(q.shape[0]):
+        low, high = q[k] <= limits[0, k], q[k] >= limits[1, k]
+        if low or high:
+            uphill = 0.0
+            for i in range(e.shape[0]):
+                uphill += J[i, k] * e[i]
+            if (low and uphill < 0.0) or (high and uphill > 0.0):
+                for i in range(e.shape[0]):
+                    J[i, k] = 0.0

@@ -1,0 +1,131 @@
+"""Small dense linear algebra for compiled loops: nothing is allocated, results go to the caller's arrays.
+
+Six rows, and six joints, have a branch of their own with the same code: a size that the compiler knows lets it unroll
+the loops, which makes a whole solve a tenth faster.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar, cast
+
+from nao_kin.kernels.compiling import jit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+    from nao_kin.arrays import Floats
+
+_Function = TypeVar("_Function", bound="Callable[..., Any]")
+
+__all__ = [
+    "add_to_diagonal",
+    "dot",
+    "leaf_jit",
+    "solve_positive",
+    "times_own_transpose",
+    "transpose_times",
+]
+
+
+def leaf_jit(function: _Function) -> _Function:
+    """Compiles a function that makes no array of its own, without counting references to the arrays it is given.
+
+    In a loop of small functions the counting, an atomic operation each time, takes as long as all the arithmetic. The
+    caller holds the arrays anyway. Slices are fine, assigning to a slice is not (it may need a copy).
+    """
+    compiled = jit(function)
+    target = getattr(compiled, "targetdescr", None)  # missing under NUMBA_DISABLE_JIT
+    if hasattr(getattr(target, "options", None), "_nrt"):  # not a public option: without it, it is only slower
+        cast("Any", compiled).targetoptions["_nrt"] = False
+    return compiled
+
+
+@leaf_jit
+def dot(a: Floats, b: Floats) -> float:
+    """Scalar product of two vectors."""
+    total = 0.0
+    for i in range(a.shape[0]):
+        total += a[i] * b[i]
+    return total
+
+
+@leaf_jit
+def times_own_transpose(J: Floats, A: Floats) -> None:
+    """Writes A = J Jᵀ of J (m, n); the lower half of A (m, m) only, which is all that `solve_positive` reads."""
+    if J.shape[0] == 6 and J.shape[1] == 6:
+        _times_own_transpose(J, A, 6, 6)
+    else:
+        _times_own_transpose(J, A, J.shape[0], J.shape[1])
+
+
+@leaf_jit
+def _times_own_transpose(J: Floats, A: Floats, m: int, n: int) -> None:
+    for i in range(m):
+        for j in range(i + 1):
+            total = 0.0
+            for k in range(n):
+                total += J[i, k] * J[j, k]
+            A[i, j] = total
+
+
+@leaf_jit
+def add_to_diagonal(A: Floats, value: float) -> None:
+    """A += value · 1."""
+    for i in range(A.shape[0]):
+        A[i, i] += value
+
+
+@leaf_jit
+def solve_positive(A: Floats, b: Floats, x: Floats) -> None:
+    """Solves A x = b for a symmetric positive definite A (m, m), whose lower half is overwritten, by A = L D Lᵀ.
+
+    Without square roots, and with one division a row. NaN or infinity in x where A is not definite.
+    """
+    if A.shape[0] == 6:
+        _solve_positive(A, b, x, 6)
+    else:
+        _solve_positive(A, b, x, A.shape[0])
+
+
+@leaf_jit
+def _solve_positive(A: Floats, b: Floats, x: Floats, m: int) -> None:
+    for j in range(m):
+        # Row j of A holds L D left of the diagonal until L itself is read off; the diagonal keeps 1/D.
+        pivot = A[j, j]
+        total = b[j]
+        for k in range(j):
+            scaled = A[j, k] * A[k, k]
+            pivot -= A[j, k] * scaled
+            total -= scaled * x[k]
+            A[j, k] = scaled
+        A[j, j] = 1.0 / pivot
+        x[j] = total
+        for i in range(j + 1, m):
+            entry = A[i, j]
+            for k in range(j):
+                entry -= A[i, k] * A[j, k]
+            A[i, j] = entry
+    for j in range(m - 1, -1, -1):
+        total = x[j] * A[j, j]
+        for i in range(j + 1, m):
+            total -= A[i, j] * x[i]
+        x[j] = total
+
+
+@leaf_jit
+def transpose_times(J: Floats, y: Floats, x: Floats) -> None:
+    """Writes x = Jᵀ y."""
+    if J.shape[0] == 6:
+        _transpose_times(J, y, x, 6)
+    else:
+        _transpose_times(J, y, x, J.shape[0])
+
+
+@leaf_jit
+def _transpose_times(J: Floats, y: Floats, x: Floats, m: int) -> None:
+    for k in range(J.shape[1]):
+        total = 0.0
+        for i in range(m):
+            total += J[i, k] * y[i]
+        x[k] = total
