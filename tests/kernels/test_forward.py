@@ -10,7 +10,7 @@ import pytest
 
 from nao_kin.chain import random_configurations
 from nao_kin.documents.chains import DOCUMENT_CHAINS
-from nao_kin.kernels import audit, forward
+from nao_kin.kernels import audit, forward, motion
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 from tests.kernels.paths import odd_robot, random_path, slow_pose
 
@@ -40,11 +40,13 @@ def chains_of(name: str) -> list:
 def one_by_one(path: JointPath, Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Poses and Jacobians by the functions for a single configuration."""
     m, n = len(path.columns), Q.shape[1]
-    origins, axes, T, J = np.empty((m, 3)), np.empty((m, 3)), np.zeros((len(Q), 4, 4)), np.empty((len(Q), 6, n))
+    joints, axes, tip = motion.packed_joints(path), np.empty((m, 6)), np.empty(12)
+    T, J = np.zeros((len(Q), 4, 4)), np.empty((len(Q), 6, n))
     T[:, 3, 3] = 1.0
     for i, q in enumerate(Q):
-        forward.forward(path, q, origins, axes, T[i])
-        forward.fill_jacobian(path, origins, axes, T[i], J[i])
+        motion.place(joints, q, axes, tip)
+        motion.jacobian(joints, axes, tip, J[i])
+        T[i, :3, :3], T[i, :3, 3] = tip[:9].reshape(3, 3), tip[9:]
     return T, J
 
 
@@ -146,11 +148,3 @@ def test_what_the_caller_passes_stays_as_it_is(kernel, rng: np.random.Generator)
     kernel(path, Q)
     for array, copy in zip((*path, Q), before, strict=True):
         np.testing.assert_array_equal(array, copy)
-
-
-def test_forward_writes_nothing_but_its_three_rows(rng: np.random.Generator) -> None:
-    path, q = random_path(rng), rng.uniform(-3, 3, 6)
-    tip, origins, axes = np.full((4, 4), 7.0), np.empty((6, 3)), np.empty((6, 3))
-    forward.forward(path, q, origins, axes, tip)
-    assert (tip[3] == 7.0).all()
-    np.testing.assert_allclose(np.linalg.norm(axes, axis=1), 1.0, atol=1e-14)

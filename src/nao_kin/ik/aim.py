@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.kernels.linear import leaf_jit
+from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats

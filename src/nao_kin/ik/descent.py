@@ -14,9 +14,8 @@ import numpy as np
 from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, goal_violation, raw_error, shape_rows
 from nao_kin.ik.loop import POLISHED, REACHED
 from nao_kin.ik.rules import update
-from nao_kin.kernels.compiling import parallel_jit, prange
+from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.limits import hold, move_inside
-from nao_kin.kernels.linear import leaf_jit
 from nao_kin.kernels.motion import jacobian, place
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.kernels.linear import add_to_diagonal, dot, leaf_jit, solve_positive, times_own_transpose, transpose_times
+from nao_kin.kernels.compiling import leaf_jit
+from nao_kin.kernels.linear import add_to_diagonal, dot, solve_positive, times_own_transpose, transpose_times
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats

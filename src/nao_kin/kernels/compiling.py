@@ -31,7 +31,7 @@ from numba.core import event as compiler_events
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-__all__ = ["KernelCacheWarning", "cache_folder", "jit", "parallel_jit", "prange"]
+__all__ = ["KernelCacheWarning", "cache_folder", "jit", "leaf_jit", "parallel_jit", "prange"]
 
 prange = numba.prange
 """`range` whose turns `parallel_jit` spreads over threads; plain `range` under `jit`."""
@@ -60,6 +60,19 @@ def jit(function: _Function) -> _Function:
     It releases the interpreter lock while it runs.
     """
     return cast("_Function", _compiled(function, parallel=False))
+
+
+def leaf_jit(function: _Function) -> _Function:
+    """Compiles a function that makes no array of its own, without counting references to the arrays it is given.
+
+    In a loop of small functions the counting, an atomic operation each time, takes as long as all the arithmetic. The
+    caller holds the arrays anyway. Slices are fine, assigning to a slice is not (it may need a copy).
+    """
+    compiled = jit(function)
+    target = getattr(compiled, "targetdescr", None)  # missing under NUMBA_DISABLE_JIT
+    if hasattr(getattr(target, "options", None), "_nrt"):  # not a public option: without it, it is only slower
+        cast("Any", compiled).targetoptions["_nrt"] = False
+    return compiled
 
 
 def parallel_jit(function: _Function) -> _Function:

@@ -1,4 +1,4 @@
-"""Compiled forward kinematics and frame Jacobians on a `JointPath`: one configuration, or many on all cores.
+"""Compiled forward kinematics and frame Jacobians of many configurations of a `JointPath`, on all cores.
 
 Many configurations are worked on in blocks of 64, with the number of the configuration as the innermost index, so that
 the compiler turns each inner loop into vector instructions. Three things keep it able to:
@@ -8,8 +8,8 @@ the compiler turns each inner loop into vector instructions. Three things keep i
 * a block's numbers lie in one flat array at constant distances, so that loads and stores are known not to overlap;
 * sine and cosine are our own, without a branch and without a call.
 
-A row of T_base_k = [x y z p], one of three, never meets the other two on the way along the path: the functions on rows
-(`_placed`, `_turned`) serve the single configuration and the block alike.
+A row of T_base_k = [x y z p], one of three, never meets the other two on the way along the path, so `_placed` and
+`_turned` take a row. One configuration at a time, inside another loop, is what `nao_kin.kernels.motion` is for.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-__all__ = ["fill_jacobian", "forward", "jacobians", "poses"]
+__all__ = ["jacobians", "poses"]
 
 _LANES: Final = 64  # a power of two that several vectors of any machine divide; 32 is unrolled instead of vectorised
 _CHUNK: Final = 16 * _LANES  # configurations a thread takes at a time: one workspace serves them all
@@ -65,64 +65,6 @@ def jacobians(path: JointPath, Q: Floats) -> Floats:
     J = np.empty((len(Q), 6, Q.shape[1]))
     _fill_jacobians(path, Q, J)
     return J
-
-
-@jit
-def forward(path: JointPath, q: Floats, origins: Floats, axes: Floats, tip: Floats) -> None:
-    """Forward kinematics of one configuration, into the caller's arrays; allocates nothing.
-
-    Args:
-        path: The chain, with m physical joints.
-        q: Configuration (n,) [rad, m].
-        origins: Receives the joints' origins (m, 3) in the base frame [m].
-        axes: Receives the joints' unit axes (m, 3) in base axes.
-        tip: Receives the upper three rows [R p] of T_base_tip (3, 4), or all of (4, 4) but the last row.
-    """
-    for a in range(3):
-        for b in range(4):
-            tip[a, b] = 1.0 if a == b else 0.0
-    for k in range(path.columns.size):
-        P = _placement(path.rotations[k], path.translations[k])
-        v = path.multipliers[k] * q[path.columns[k]] + path.offsets[k]
-        slides = path.prismatic[k] != 0
-        s, c = (0.0, 1.0) if slides else sine_cosine(v)
-        for a in range(3):
-            x, y, z, p = _placed(tip[a, 0], tip[a, 1], tip[a, 2], tip[a, 3], P)
-            origins[k, a], axes[k, a] = p, z
-            tip[a, 0], tip[a, 1] = _turned(x, y, s, c)
-            tip[a, 2], tip[a, 3] = z, (p + v * z if slides else p)
-    P = _placement(path.tool_rotation, path.tool_translation)
-    for a in range(3):
-        tip[a, 0], tip[a, 1], tip[a, 2], tip[a, 3] = _placed(tip[a, 0], tip[a, 1], tip[a, 2], tip[a, 3], P)
-
-
-@jit
-def fill_jacobian(path: JointPath, origins: Floats, axes: Floats, tip: Floats, J: Floats) -> None:
-    """The frame Jacobian of one configuration from what `forward` found; allocates nothing.
-
-    Args:
-        path: The chain, with m physical joints.
-        origins: Joint origins (m, 3) [m].
-        axes: Joint axes (m, 3).
-        tip: T_base_tip, (3, 4) or (4, 4).
-        J: Receives the Jacobian (6, n) at the tip point in base axes, rows (linear; angular).
-    """
-    J[:] = 0.0
-    for k in range(path.columns.size):
-        j, factor = path.columns[k], path.multipliers[k]
-        zx, zy, zz = factor * axes[k, 0], factor * axes[k, 1], factor * axes[k, 2]
-        if path.prismatic[k]:
-            J[0, j] += zx
-            J[1, j] += zy
-            J[2, j] += zz
-        else:
-            dx, dy, dz = tip[0, 3] - origins[k, 0], tip[1, 3] - origins[k, 1], tip[2, 3] - origins[k, 2]
-            J[0, j] += zy * dz - zz * dy
-            J[1, j] += zz * dx - zx * dz
-            J[2, j] += zx * dy - zy * dx
-            J[3, j] += zx
-            J[4, j] += zy
-            J[5, j] += zz
 
 
 @jit

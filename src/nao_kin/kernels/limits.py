@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.kernels.linear import leaf_jit
+from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

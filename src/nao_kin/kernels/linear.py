@@ -6,39 +6,20 @@ the loops, which makes a whole solve a tenth faster.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TYPE_CHECKING
 
-from nao_kin.kernels.compiling import jit
+from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Any
-
     from nao_kin.arrays import Floats
-
-_Function = TypeVar("_Function", bound="Callable[..., Any]")
 
 __all__ = [
     "add_to_diagonal",
     "dot",
-    "leaf_jit",
     "solve_positive",
     "times_own_transpose",
     "transpose_times",
 ]
-
-
-def leaf_jit(function: _Function) -> _Function:
-    """Compiles a function that makes no array of its own, without counting references to the arrays it is given.
-
-    In a loop of small functions the counting, an atomic operation each time, takes as long as all the arithmetic. The
-    caller holds the arrays anyway. Slices are fine, assigning to a slice is not (it may need a copy).
-    """
-    compiled = jit(function)
-    target = getattr(compiled, "targetdescr", None)  # missing under NUMBA_DISABLE_JIT
-    if hasattr(getattr(target, "options", None), "_nrt"):  # not a public option: without it, it is only slower
-        cast("Any", compiled).targetoptions["_nrt"] = False
-    return compiled
 
 
 @leaf_jit

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.kernels.linear import leaf_jit
+from nao_kin.kernels.compiling import leaf_jit
 from nao_kin.kernels.trigonometry import sine_cosine
 
 if TYPE_CHECKING:
