@@ -1,7 +1,6 @@
 """A robot out of a URDF file, with Pinocchio doing the arithmetic.
 
-Pinocchio's own configuration vector, its alphabetical joint order and its (cos, sin) pairs for continuous joints stay
-inside this module: outside, a robot has postures, joint name to number.
+Pinocchio's own configuration vector stays behind it: outside, a robot has postures, joint name to number.
 """
 
 from __future__ import annotations
@@ -19,16 +18,15 @@ import pinocchio as pin
 from nao_kin.chain import LimitRule, OutsideLimit
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
+from nao_kin.pinocchio_layout import PinocchioLayout
 from nao_kin.table import Column, Table
 from nao_kin.urdf import UrdfDocument, read_urdf
 from nao_kin.urdf_chain import UrdfChain
 from nao_kin.urdf_path import Coupling, joint_range, motor_ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
-    from nao_kin.arrays import Floats
     from nao_kin.urdf.elements import UrdfJoint
 
 __all__ = ["Robot", "load"]
@@ -272,8 +270,8 @@ class Robot:
         return frozenset(self.frame_names)
 
     @cached_property
-    def _layout(self) -> _Layout:
-        return _Layout.of(self.model, self.joint_names)
+    def _layout(self) -> PinocchioLayout:
+        return PinocchioLayout.of(self.model, self.joint_names)
 
     @cached_property
     def _frame_ids(self) -> dict[str, int]:
@@ -299,42 +297,6 @@ class Robot:
             rows.append((joint.name, follows, f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}"))
         columns = (Column("joint"), Column("kind"), *(Column(c, number=True) for c in ("lower", "upper", "max speed")))
         return Table(columns, tuple(rows), title=f"{self.name}: joints [rad, rad/s; m, m/s]")
-
-
-@dataclass(frozen=True)
-class _Layout:
-    """Where in Pinocchio's vectors the named joints are.
-
-    Attributes:
-        neutral: Pinocchio's own neutral configuration.
-        plain: Joints with one number: their places in our order, and in Pinocchio's vector.
-        turning: The same for continuous joints, which take a cosine and a sine.
-    """
-
-    neutral: Floats
-    plain: tuple[list[int], list[int]]
-    turning: tuple[list[int], list[int]]
-
-    @classmethod
-    def of(cls, model: pin.Model, names: Sequence[str]) -> _Layout:
-        """The layout of the named joints in a model."""
-        joints = [model.joints[model.getJointId(name)] for name in names]
-        plain = [k for k, joint in enumerate(joints) if joint.nq == 1]
-        turning = [k for k, joint in enumerate(joints) if joint.nq == 2]
-        return cls(
-            neutral=pin.neutral(model),
-            plain=(plain, [joints[k].idx_q for k in plain]),
-            turning=(turning, [joints[k].idx_q for k in turning]),
-        )
-
-    def q(self, values: Floats) -> Floats:
-        """Pinocchio's configuration vector: continuous joints become a cosine and a sine."""
-        q: Floats = self.neutral.copy()
-        source, target = self.plain
-        q[target] = values[source]
-        for k, i in zip(*self.turning, strict=True):
-            q[i], q[i + 1] = math.cos(values[k]), math.sin(values[k])
-        return q
 
 
 def _limit_rule(rule: CoupledLimit) -> LimitRule:
