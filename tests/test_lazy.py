@@ -32,7 +32,9 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
     ],
 )
 def test_commands_import_what_they_need_only(arguments: list[str], without: set[str]) -> None:
-    code = f"from nao_kin.cli.app import app\napp({arguments!r}, standalone_mode=False)"
+    code = (
+        f"from nao_kin.cli.app import application\napplication({arguments[:1]!r})({arguments!r}, standalone_mode=False)"
+    )
     assert imported_by(code).isdisjoint(without)
 
 

@@ -5,7 +5,6 @@ Nothing here needs Pinocchio, so the list of robots prints fast.
 
 from __future__ import annotations
 
-import importlib.metadata
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
@@ -211,6 +210,8 @@ def robot_file(known: KnownRobot) -> Path:
 
 def example_robot_data_share() -> Path | None:
     """The share folder that example-robot-data was installed to, or None; the package has no module to ask."""
+    import importlib.metadata  # which brings the parser of mail headers along
+
     try:
         distribution = importlib.metadata.distribution("example-robot-data")
     except importlib.metadata.PackageNotFoundError:

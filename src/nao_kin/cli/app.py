@@ -5,52 +5,59 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import os
 import sys
-from typing import NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import typer
 
-from nao_kin.cli.bench import bench
-from nao_kin.cli.compare import compare
-from nao_kin.cli.demo import demo
-from nao_kin.cli.fk import fk
-from nao_kin.cli.html import html
-from nao_kin.cli.ik import ik
-from nao_kin.cli.robots import robots
-from nao_kin.cli.warmup import warmup
 from nao_kin.errors import NaoKinError
 
-__all__ = ["app", "main"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
-app = typer.Typer(
-    name="nao-kin",
-    help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages.",
-    no_args_is_help=True,
-    invoke_without_command=True,
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-)
+__all__ = ["COMMANDS", "application", "main"]
 
-# "-0.5" is a number for these commands, not an option; what else begins with a dash is refused by name.
-NUMBERS = {"ignore_unknown_options": True}
+# "-0.5" is a number for fk, not an option; what else begins with a dash is refused there by name.
+_NUMBERS: Final = {"ignore_unknown_options": True}
 
-app.command()(demo)
-app.command()(robots)
-app.command(context_settings=NUMBERS)(fk)
-app.command()(ik)
-app.command()(compare)
-app.command()(html)
-app.command()(warmup)
-app.add_typer(bench, name="bench")
+COMMANDS: Final[dict[str, dict[str, Any]]] = {
+    "demo": {},
+    "robots": {},
+    "fk": {"context_settings": _NUMBERS},
+    "ik": {},
+    "compare": {},
+    "html": {},
+    "warmup": {},
+    "bench": {},
+}
+"""The commands, in the order of the help; each is the function of that name in the module of that name."""
 
 
-@app.callback()
-def root(
-    version: bool = typer.Option(False, "--version", help="Print the version and exit."),
-) -> None:
+def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
+    """The command line with these commands; only their modules are imported."""
+    app = typer.Typer(
+        name="nao-kin",
+        help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages.",
+        no_args_is_help=True,
+        invoke_without_command=True,
+        add_completion=False,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+    )
+    app.callback()(_root)
+    for name in names:
+        command = getattr(importlib.import_module(f"nao_kin.cli.{name}"), name)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command(**COMMANDS[name])(command)
+    return app
+
+
+def _root(version: bool = typer.Option(False, "--version", help="Print the version and exit.")) -> None:
     """Robot kinematics with the model as the truth."""
     if version:
         import nao_kin
@@ -63,8 +70,10 @@ def main() -> NoReturn:
     """Runs the command line and exits with its status."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal that has no arrow gets a question mark
+    # typer reads every parameter of every command before it runs one, which takes longer than most of them do.
+    asked = [word for word in sys.argv[1:2] if word in COMMANDS]
     try:
-        status = app(standalone_mode=True)
+        status = application(asked or COMMANDS)(standalone_mode=True)
     except NaoKinError as error:
         typer.echo(f"nao-kin: {error}", err=True)
         sys.exit(2)

@@ -84,6 +84,7 @@ class Prepared:
 _PREPARED: weakref.WeakKeyDictionary[Chain, dict[Any, Prepared]] = weakref.WeakKeyDictionary()
 _KEPT = 64  # sets of options a chain; who tries thousands of them shall not fill the memory
 _FLOAT64 = np.dtype(np.float64)
+_IDENTITY = np.eye(4)
 
 
 def solve(
@@ -120,8 +121,13 @@ def solve(
         InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
         UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
     """
+    # The usual forms by hand: compiled code checks their numbers in passing, for a tenth of what numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
-        wanted = Target("pose", target.copy())  # compiled code checks it in passing
+        wanted = Target("pose", target.copy())
+    elif type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (3,):
+        goal = _IDENTITY.copy()
+        goal[:3, 3] = target
+        wanted = Target("position", goal)
     elif isinstance(target, pin.SE3):
         wanted = Target("pose", np.array(target.homogeneous, order="C"))
     else:

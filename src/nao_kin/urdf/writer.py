@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import sys
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -24,7 +24,7 @@ def kinematic_xml(name: str, links: Iterable[UrdfLink], joints: Iterable[UrdfJoi
     Shapes are left out because nothing here loads them from Pinocchio, and couplings because they are applied outside
     it. Numbers are written so that reading them gives the same floats.
     """
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(name)}>"]
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={_quoted(name)}>"]
     for link in links:
         lines.extend(_link(link))
     for joint in joints:
@@ -35,9 +35,9 @@ def kinematic_xml(name: str, links: Iterable[UrdfLink], joints: Iterable[UrdfJoi
 
 def _link(link: UrdfLink) -> Iterator[str]:
     if link.inertial is None:
-        yield f"  <link name={quoteattr(link.name)}/>"
+        yield f"  <link name={_quoted(link.name)}/>"
         return
-    yield f"  <link name={quoteattr(link.name)}>"
+    yield f"  <link name={_quoted(link.name)}>"
     yield from _inertial(link.inertial)
     yield "  </link>"
 
@@ -53,9 +53,9 @@ def _inertial(inertial: Inertial) -> Iterator[str]:
 
 
 def _joint(joint: UrdfJoint) -> Iterator[str]:
-    yield f'  <joint name={quoteattr(joint.name)} type="{joint.kind}">'
-    yield f"    <parent link={quoteattr(joint.parent)}/>"
-    yield f"    <child link={quoteattr(joint.child)}/>"
+    yield f'  <joint name={_quoted(joint.name)} type="{joint.kind}">'
+    yield f"    <parent link={_quoted(joint.parent)}/>"
+    yield f"    <child link={_quoted(joint.child)}/>"
     yield f"    {_origin(joint.origin)}"
     if joint.kind != "fixed":
         yield f'    <axis xyz="{_numbers(joint.axis)}"/>'
@@ -81,3 +81,8 @@ def _origin(origin: Origin) -> str:
 
 def _numbers(values: Iterable[float]) -> str:
     return " ".join(map(repr, values))
+
+
+def _quoted(name: str) -> str:
+    """A name as an attribute's value; names hold no control characters, the reader has refused them."""
+    return f'"{html.escape(name)}"'

@@ -1,0 +1,25 @@
+"""`nao-kin bench`: speed as ratios taken in one run, never as bare seconds, and every answer checked."""
+
+from __future__ import annotations
+
+import typer
+
+from nao_kin.cli.bench.edges import edges
+from nao_kin.cli.bench.fk import fk
+from nao_kin.cli.bench.ik import ik
+from nao_kin.cli.bench.startup import startup
+
+__all__ = ["bench"]
+
+bench = typer.Typer(help="Measure speed as ratios within one run.", no_args_is_help=True, rich_markup_mode=None)
+
+
+@bench.callback()
+def root() -> None:
+    """Measure speed as ratios within one run. Exit status 1 means that a goal was missed."""
+
+
+bench.command()(fk)
+bench.command()(ik)
+bench.command()(edges)
+bench.command()(startup)

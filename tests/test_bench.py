@@ -1,0 +1,238 @@
+"""The benchmarks, at sizes where only what they say can be tested, never how fast anything is."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+import nao_kin as nk
+from nao_kin.cli.app import app
+from nao_kin.cli.bench import peers as peers_module
+from nao_kin.cli.bench.arms import main_arm, many_chains
+from nao_kin.cli.bench.contest import Contender, Task, contest
+from nao_kin.cli.bench.edge_targets import bad_targets, farthest, near_full_reach
+from nao_kin.cli.bench.measuring import in_turns, one_thread
+from nao_kin.cli.bench.peers import Peer, Unsuited, installed_peers
+from nao_kin.cli.bench.referee import NEAR, Referee
+from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
+from nao_kin.cli.output import OutputFormat
+
+IK = ("ik", "--targets", "20", "--batch", "40", "--runs", "1")
+EDGES = ("edges", "--targets", "10", "--samples", "5000")
+FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
+
+
+def bench(*arguments: str, status: int = 0) -> str:
+    done = CliRunner().invoke(app, ["bench", *arguments, "--no-goals"], catch_exceptions=False)
+    assert done.exit_code == status, done.output
+    return done.stdout
+
+
+def data_of(*arguments: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(bench(*arguments, "--format", "json"))
+    assert data["machine"].keys() == {"python", "processor", "cores", "load", "versions"}
+    assert all(goal.keys() == {"what", "value", "bound", "at_least", "met"} for goal in data["goals"])
+    return data
+
+
+def missed(data: dict[str, Any], *timed: str) -> list[str]:
+    """Goals that are missed, those about time left out."""
+    return [
+        goal["what"] for goal in data["goals"] if not goal["met"] and not any(word in goal["what"] for word in timed)
+    ]
+
+
+def liar(task: Task) -> Contender:
+    """Says of every target that the start reaches it."""
+    return Contender("liar", lambda _: task.start, lambda q: q)
+
+
+def honest(task: Task) -> Contender:
+    """Solves as we do, in its own words."""
+    chain = task.chain
+    return Contender("honest", lambda T: nk.solve(chain, T), lambda r: r.q if r.solved else None)
+
+
+def fussy(task: Task) -> Contender:
+    raise Unsuited("only arms of another colour")
+
+
+@pytest.fixture
+def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = (
+        Peer("liar", "liar", "json", liar),
+        Peer("honest", "honest", "json", honest),
+        Peer("fussy", "fussy", "json", fussy),
+        Peer("absent", "absent-on-the-shelf", "no_such_module_here", honest),
+    )
+    monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
+
+
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES])
+def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
+    text = bench(*arguments)
+    assert max(map(len, text.splitlines())) <= 80
+    assert "should be" in text
+    assert "numpy" in text
+
+
+def test_fk_compares_every_bundled_robot_with_pinocchio() -> None:
+    data = data_of(*FK)
+    assert {"poses", "Jacobians"} == {row["what"] for row in data["rows"]}
+    assert all(row["ms"] > 0.0 and row["over_loop"] > 0.0 for row in data["rows"])
+    assert {"nao_v50_h25", "jaco2", "phantomx"} <= {row["robot"] for row in data["differences"]}
+    assert all(max(row["poses"], row["jacobians"]) <= 1e-12 for row in data["differences"])
+    assert missed(data, "times the loop") == []
+
+
+def test_ik_solves_everything_alone_in_batches_and_on_many_robots() -> None:
+    data = data_of(*IK)
+    assert [row["solver"] for row in data["single_pose"]] == ["nao_kin"]
+    assert all(row["success"] == 100.0 for row in data["single_pose"] + data["single_position"] + data["robots"])
+    assert all(row["success"] == 100.0 and row["same_bits"] and row["ratio"] is None for row in data["batch"])
+    assert len(data["robots"]) == len(many_chains()[0])
+    assert missed(data) == []
+
+
+def test_a_peer_that_lies_has_no_success(fakes: None) -> None:
+    data = data_of(*IK, "--peers")
+    for sheet in ("single_pose", "single_position"):
+        success = {row["solver"]: (row["success"], row["near"]) for row in data[sheet]}
+        assert success["liar"] == (0.0, 0.0)
+        assert success["nao_kin"] == (100.0, 100.0)
+    assert {row["solver"]: row["success"] for row in data["single_pose"]}["honest"] == 100.0
+    assert "Without roboticstoolbox, the goals against it are not measured." in data["notes"]
+    assert "Without fussy: only arms of another colour." in data["notes"]
+    assert "Without absent: to have it beside, pip install absent-on-the-shelf." in data["notes"]
+
+
+def test_edges_proves_what_is_out_of_reach_and_refuses_nonsense() -> None:
+    data = data_of(*EDGES)
+    assert all(row["success"] == 100.0 for row in data["singular"])
+    assert all(row["proven"] == row["targets"] for row in data["unreachable"] if row["factor"] >= 1.5)
+    assert all(row["false"] == 0 for row in data["unreachable"])
+    assert {row["nao_kin"] for row in data["bad_input"]} == {"refused"}
+    assert missed(data, "proven no") == []
+
+
+def test_edges_tells_a_claim_from_an_answer(fakes: None) -> None:
+    data = data_of(*EDGES, "--peers")
+    told = {(row["solver"], row["factor"]): (row["claimed"], row["reached"]) for row in data["unreachable_peers"]}
+    assert told["liar", 5.0] == (10, 0)
+    assert told["honest", 5.0] == (0, 0)
+    assert {row["solver"] for row in data["singular"]} == {"nao_kin", "liar", "honest"}
+
+
+def test_startup_is_plain_data() -> None:
+    data = data_of("startup", "--rounds", "1")
+    assert [row["what"] for row in data["rows"]][-1] == "first solve, warm cache"
+    assert all(row["ratio"] == pytest.approx(row["ms"] / row["against_ms"]) for row in data["rows"])
+
+
+def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:
+    sheet = Sheet("rows", "title", (Heading("a", "a"), Heading("b", "b", ".1f")), [{"a": "x", "b": None}])
+    goals = [Goal("speed", 2.0, 3.0), Goal("error", 0.0, 0.0, at_least=False)]
+    assert [goal.met for goal in goals] == [False, True]
+    assert not Goal("nothing", math.nan, 0.0).met
+    conclude(Machine(), [sheet], goals, ["a note"], OutputFormat.text, enforce=False)
+    assert "NO" in capsys.readouterr().out
+    with pytest.raises(typer.Exit) as left:
+        conclude(Machine(), [sheet], goals, [], OutputFormat.json, enforce=True)
+    assert left.value.exit_code == 1
+    assert json.loads(capsys.readouterr().out)["rows"] == [{"a": "x", "b": None}]
+
+
+def test_a_busy_machine_is_mentioned() -> None:
+    assert "busy" in str(Machine(cores=2, load=1.5))
+    assert "busy" not in str(Machine(cores=2, load=0.5))
+    assert "load" not in str(Machine(load=None))
+
+
+def test_the_referee_is_strict() -> None:
+    head = nk.load("nao").chain("head")
+    referee, inside = Referee(head), np.array([0.2, 0.1])
+    T = referee.pose(inside)
+    assert np.abs(T - head.pose(inside).homogeneous).max() < 1e-12
+    assert referee.accepts(inside, T)
+    assert not referee.accepts(None, T)
+    assert not referee.accepts(np.array([0.2, np.nan]), T)
+    assert not referee.accepts(np.array([0.2]), T)
+    beside = inside + np.array([0.0, 5e-6])
+    assert not referee.accepts(beside, T)
+    assert referee.accepts(beside, T, within=NEAR)
+    far_out = np.array([3.0, 0.0])
+    assert not referee.accepts(far_out, referee.pose(far_out))
+    coupled = np.array([2.0, 0.5])  # each joint within its own range, the pitch outside what the yaw leaves it
+    assert not referee.accepts(coupled, referee.pose(coupled))
+
+
+def test_the_referee_knows_continuous_and_coupled_joints_and_paths_up_the_tree(rng: np.random.Generator) -> None:
+    robot = nk.load("nao")
+    for chain in (nk.load("jaco2").chain("arm"), robot.chain("l_sole", "r_sole"), robot.chain("right_leg")):
+        referee, q = Referee(chain), rng.uniform(-0.3, 0.3, len(chain.joints))
+        assert referee.pose(q) == pytest.approx(chain.pose(q).homogeneous, abs=1e-12)
+        assert referee.jacobian(q) == pytest.approx(chain.jacobian(q), abs=1e-12)
+
+
+def test_targets_of_the_edges_are_what_they_claim(rng: np.random.Generator) -> None:
+    arm = nk.load("jaco2").chain("arm")
+    q_far, reach = farthest(arm, 1000, rng)
+    assert np.linalg.norm(arm.pose(q_far).translation) == pytest.approx(reach)
+    poses = near_full_reach(arm, q_far, 0.99 * reach, 5, rng)
+    assert np.linalg.norm(poses[:, :3, 3], axis=1) == pytest.approx(0.99 * reach, abs=1e-12)
+    assert len(bad_targets(arm)) == 7
+
+
+def test_without_the_extra_the_jaco2_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("nao_kin.known.example_robot_data_share", lambda: None)
+    arm, notes = main_arm()
+    assert arm.robot.name == "jaco2"
+    assert "Measured on jaco2 instead" in notes[0]
+    chains, missing = many_chains()
+    assert {chain.robot.name for chain, _ in chains} == {"jaco2", "nao_v50_h25", "phantomx"}
+    assert len(missing) == 3
+
+
+def test_times_are_taken_in_turns() -> None:
+    called: list[str] = []
+    jobs = {"a": lambda: called.append("a"), "b": lambda: called.append("b")}
+    times = in_turns(jobs, range(2), {"b": 2})
+    assert called == ["a", "b", "b"] * 2
+    assert [len(times[name]) for name in "ab"] == [2, 4]
+
+
+def test_one_thread_is_given_back() -> None:
+    import numba
+
+    before = numba.get_num_threads()
+    with one_thread():
+        assert numba.get_num_threads() == 1
+    assert numba.get_num_threads() == before
+
+
+def test_every_contender_gets_every_target() -> None:
+    arm = nk.load("jaco2").chain("arm")
+    task = Task.reachable(arm, 60, 3)
+    asked: list[bytes] = []
+    solver = Contender("echo", lambda T: asked.append(T.tobytes()), lambda _: None)
+    (score,) = contest(task, [solver], 2, "counting")
+    assert score.times.shape == (2, 60)
+    assert (score.claimed, score.reached, score.near) == (0, 0, 0)
+    assert set(asked) == {T.tobytes() for T in task.targets}
+
+
+@pytest.mark.parametrize("name", tuple(peers_module.PEERS))
+def test_installed_peers_solve_what_they_are_given(name: str) -> None:
+    arm, _ = main_arm()
+    task = Task.reachable(arm, 20, 5)
+    found, left_out = installed_peers(task, [name])
+    if not found:
+        pytest.skip(left_out[0])
+    (score,) = contest(task, found, 1, name)
+    assert score.near >= 10  # a solver without restarts finds two thirds; a wrong adapter finds none
