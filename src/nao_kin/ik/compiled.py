@@ -30,14 +30,8 @@ __all__ = ["KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goal
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
-_NO_TRACE: Final = np.empty((0, 1))
-_ENDED: Final = {
-    descent.SOLVED: Status.SOLVED,
-    descent.STALLED: Status.STALLED,
-    descent.BUDGET_SPENT: Status.BUDGET_SPENT,
-    descent.OUT_OF_REACH: Status.OUT_OF_REACH,
-    descent.NOT_FINITE: Status.NOT_FINITE,
-}
+# By the codes of `nao_kin.ik.descent`, which count from 0.
+_ENDED: Final = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -51,7 +45,8 @@ class Tables:
         stored: Stored starts with their tips (K, n + 12).
         closeness: Weight of squared distances among the stored starts [1/m²].
         shell: Centre of the reach (3), least and greatest distance from it (5,) [m].
-        scratch_size: Numbers of scratch memory that a solve needs.
+        outcome_size: Numbers in an outcome.
+        work_size: Numbers of memory that a solve needs, its outcome included.
     """
 
     joints: Floats
@@ -60,7 +55,8 @@ class Tables:
     stored: Floats
     closeness: float
     shell: Floats
-    scratch_size: int
+    outcome_size: int
+    work_size: int
 
 
 _TABLES: weakref.WeakKeyDictionary[Chain, dict[int, Tables]] = weakref.WeakKeyDictionary()
@@ -80,15 +76,17 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
 
 def _tables(chain: Chain, seed: int) -> Tables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
-    joints = packed_joints(chain.joint_path)
+    joints, size = packed_joints(chain.joint_path), descent.OUTCOME + len(chain.joints)
+    limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
     return Tables(
         joints=joints,
-        limits=np.array([chain.lower, chain.upper]),
-        coupled=packed_rules(chain.limit_rules, chain.joint_names),
+        limits=limits,
+        coupled=coupled,
         stored=starts.table,
         closeness=starts.closeness,
         shell=np.array([*shell.centre, shell.inner * (1.0 - _ROUNDING), shell.outer * (1.0 + _ROUNDING)]),
-        scratch_size=descent.scratch_size(joints, starts.table),
+        outcome_size=size,
+        work_size=size + descent.scratch_size(joints, starts.table),
     )
 
 
@@ -135,7 +133,7 @@ def trace_rows(tables: Tables, budget: Budget) -> Floats:
     return np.empty(((budget.iterations + 1) * starts, tables.limits.shape[1] + 3))
 
 
-def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats = _NO_TRACE) -> Floats:
+def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
     """Solves for one target; returns the outcome, see `nao_kin.ik.descent`. Nothing passed in is changed but `trace`.
 
     Args:
@@ -143,11 +141,14 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
         settings: From `settings_of`.
         goal: The target (4, 4), C-contiguous float64.
         q0: Start (n,), C-contiguous float64.
-        trace: From `trace_rows`.
+        trace: From `trace_rows`, if the iterates are wanted.
     """
-    outcome = np.empty(descent.OUTCOME + tables.limits.shape[1])
-    scratch = np.empty(tables.scratch_size)
     t = tables
+    if trace is None:
+        work = np.empty(t.work_size)
+        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work)
+        return work[: t.outcome_size]
+    outcome, scratch = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size)
     descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch)
     return outcome
 
@@ -158,8 +159,8 @@ def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> 
     An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.
     """
     t = tables
-    outcomes = np.empty((len(goals), descent.OUTCOME + t.limits.shape[1]))
-    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.scratch_size)
+    outcomes = np.empty((len(goals), t.outcome_size))
+    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size)
     return outcomes
 
 
@@ -174,19 +175,13 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
     Raises:
         InvalidInputError: The target or the start made no sense; carries the size of the violation.
     """
-    _, _, code, iterations, starts, moved, amount, *_ = outcome.tolist()
-    if code < 0.0:
-        raise _refusal(int(code), amount)
-    return Run(
-        outcome[descent.OUTCOME :],
-        _ENDED[code],
-        int(iterations),
-        int(starts),
-        moved != 0.0,
-        amount,
-        "",
-        None if trace is None else _trace(trace[: int(iterations + starts)], kind),
-    )
+    told = outcome.tolist()
+    code, iterations, starts = int(told[descent.CODE]), int(told[descent.ITERATIONS]), int(told[descent.STARTS])
+    if code < 0:
+        raise _refusal(code, told[descent.AMOUNT])
+    iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
+    moved, amount = told[descent.START_MOVED] != 0.0, told[descent.AMOUNT]
+    return Run(outcome[descent.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:

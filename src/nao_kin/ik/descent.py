@@ -101,6 +101,23 @@ def solve_one(
     outcome[AMOUNT] = misses_by
 
 
+@leaf_jit
+def solve_quickly(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    stored: Floats,
+    settings: Floats,
+    goal: Floats,
+    q0: Floats,
+    work: Floats,
+) -> None:
+    """`solve_one` without a trace: the first OUTCOME + n numbers of `work` receive the outcome, the rest is scratch."""
+    size = OUTCOME + q0.shape[0]
+    nothing = work[:0].reshape(0, 1)
+    solve_one(joints, limits, coupled, stored, settings, goal, q0, work[:size], nothing, work[size:])
+
+
 @parallel_jit
 def solve_many(
     joints: Floats,

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik import descent, rules
+from nao_kin.ik import rules
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.loop import Budget, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
@@ -84,7 +84,7 @@ class Prepared:
 _PREPARED: weakref.WeakKeyDictionary[Chain, dict[Any, Prepared]] = weakref.WeakKeyDictionary()
 _KEPT = 64  # sets of options a chain; who tries thousands of them shall not fill the memory
 _FLOAT64 = np.dtype(np.float64)
-_IDENTITY = np.eye(4)
+_IDENTITY, _PLACE = np.eye(4), (slice(0, 3), 3)
 
 
 def solve(
@@ -126,7 +126,7 @@ def solve(
         wanted = Target("pose", target.copy())
     elif type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (3,):
         goal = _IDENTITY.copy()
-        goal[:3, 3] = target
+        goal[_PLACE] = target
         wanted = Target("position", goal)
     elif isinstance(target, pin.SE3):
         wanted = Target("pose", np.array(target.homogeneous, order="C"))
@@ -138,15 +138,13 @@ def solve(
         return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine))
     ready = prepared(problem, method, budget, seed)
     start = ready.neutral if q0 is None else start_of(chain, q0)
-    if not trace:
-        outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start)
-        rows = None
-    else:
-        rows = trace_rows(ready.tables, budget or Budget())
-        outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
-    if outcome[descent.CODE] < 0.0:
-        Target.of(target)  # says what is wrong with it
-    return judge(problem, run_of(outcome, KINDS[wanted.kind], rows))
+    rows = trace_rows(ready.tables, budget or Budget()) if trace else None
+    outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
+    try:
+        return judge(problem, run_of(outcome, KINDS[wanted.kind], rows))
+    except InvalidInputError:
+        Target.of(target)  # says it better, if it is the target that makes no sense
+        raise
 
 
 def prepared(problem: Problem, method: str, budget: Budget | None, seed: int) -> Prepared:
@@ -182,11 +180,9 @@ def start_of(chain: Chain, q0: ArrayLike | Mapping[str, float]) -> Floats:
         InvalidInputError: Wrong length, not finite, or contradicting a coupling.
         UnknownNameError: A name is no joint.
     """
-    if isinstance(q0, Mapping):
-        return chain.q_of(q0)
-    if type(q0) is np.ndarray and q0.dtype is _FLOAT64 and q0.shape == (len(chain.joints),) and q0.flags.carray:
+    if type(q0) is np.ndarray and q0.dtype is _FLOAT64 and q0.shape == chain.lower.shape and q0.flags.carray:
         return q0  # compiled code neither changes it nor lets a number pass that is not finite
-    return configuration(chain, q0)
+    return chain.q_of(q0) if isinstance(q0, Mapping) else configuration(chain, q0)
 
 
 def _run_in_python(

@@ -36,6 +36,15 @@ class Status(enum.Enum):
     NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
 
 
+# The judge runs after every solve; looking a member up in its class takes as long as a joint's arithmetic.
+_SOLVED, _STALLED, _OUTSIDE_LIMITS, _NOT_FINITE = (
+    Status.SOLVED,
+    Status.STALLED,
+    Status.OUTSIDE_LIMITS,
+    Status.NOT_FINITE,
+)
+
+
 @dataclass(eq=False, slots=True)
 class Problem:
     """What is wanted of a chain.
@@ -184,16 +193,14 @@ def judge(problem: Problem, run: Run) -> IKResult:
         outside = outside_limits(chain, q, tolerances.limits)
     # Comparisons with NaN, which stands for an error that the target leaves free, are false.
     reached = not (position > tolerances.position or rotation > tolerances.rotation)
-    if reached and ended is not Status.NOT_FINITE:
-        ended = Status.OUTSIDE_LIMITS if outside else Status.SOLVED
-    elif ended is Status.SOLVED or ended is Status.OUTSIDE_LIMITS:
-        ended = Status.STALLED  # a claim that the measurement does not confirm: a solver that stopped short of it
+    if reached and ended is not _NOT_FINITE:
+        ended = _OUTSIDE_LIMITS if outside else _SOLVED
+    elif ended is _SOLVED or ended is _OUTSIDE_LIMITS:
+        ended = _STALLED  # a claim that the measurement does not confirm: a solver that stopped short of it
     q.flags.writeable = False
-    return IKResult(problem, q, ended, _or_none(position), _or_none(rotation), outside, run)
-
-
-def _or_none(error: float) -> float | None:
-    return None if error != error else error
+    far = position if position == position else None  # NaN becomes None
+    turned = rotation if rotation == rotation else None
+    return IKResult(problem, q, ended, far, turned, outside, run)
 
 
 def _count(number: int, noun: str) -> str:
