@@ -28,6 +28,11 @@ def run(*arguments: object, cwd: Path | None = None, **environment: str) -> subp
     )
 
 
+def quiet(stderr: str) -> bool:
+    """Nothing but, on a machine's first run, the announcement of what is being compiled."""
+    return all(line.startswith("nao_kin: compiling kernels") for line in stderr.splitlines())
+
+
 def ok(*arguments: object, status: int = 0, **environment: str) -> str:
     done = run(*arguments, **environment)
     assert done.returncode == status, done.stdout + done.stderr
@@ -127,7 +132,7 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
     done = run("demo", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert max(len(line) for line in done.stdout.splitlines()) <= 80
-    assert done.stderr == ""
+    assert quiet(done.stderr)
     for expected in ("thesis_right_arm", "agrees", "joint_5", "Where to look next", "The target is reached"):
         assert expected in done.stdout
     assert (tmp_path / "demo" / "nao.html").is_file()
