@@ -13,6 +13,7 @@ from nao_kin.ik import aim
 from nao_kin.ik.compiled import tables_of
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
+from nao_kin.ik.target import Target
 from nao_kin.kernels.motion import jacobian, place
 from nao_kin.tolerances import Tolerances
 from tests.ik.solving import (
@@ -52,7 +53,7 @@ def test_pointing_targets_are_reached(rng: np.random.Generator) -> None:
         for q in random_configurations(chain, 200, rng):
             T, tip_axis = chain.pose(q), rng.standard_normal(3)
             tip_axis /= np.linalg.norm(tip_axis)
-            goal = aim.pointing_goal(T.translation, tip_axis, T.rotation @ tip_axis)
+            goal = Target.pointing(T.translation, T.rotation @ tip_axis, tip_axis).goal
             run = compiled(chain, goal, neutral(chain), "pointing")
             solved += run.ended is Status.SOLVED
             if run.ended is Status.SOLVED:
@@ -67,7 +68,7 @@ def test_pointing_the_opposite_way_is_an_error_of_pi(rng: np.random.Generator) -
     for axis in (*np.eye(3), *rng.standard_normal((20, 3))):
         axis = axis / np.linalg.norm(axis)
         R, e = pin.exp3(rng.standard_normal(3)), np.empty(6)
-        goal = aim.pointing_goal(np.zeros(3), axis, -R @ axis)
+        goal = Target.pointing(np.zeros(3), -R @ axis, axis).goal
         aim.raw_error(aim.POINTING, goal, np.concatenate([R.ravel(), np.zeros(3)]), e)
         assert np.linalg.norm(e[3:]) == pytest.approx(math.pi, abs=1e-7)
         np.testing.assert_allclose(pin.exp3(e[3:]) @ R @ axis, -R @ axis, atol=1e-7)

@@ -123,7 +123,7 @@ def test_a_lying_kernel_is_caught(rng: np.random.Generator, monkeypatch: pytest.
     ("change", "message"),
     [
         (lambda T: T[:, :3, :3], r"targets.*shape \(3, 3, 3\)"),
-        (lambda _: np.full((2, 3), np.nan), "targets.*finite"),
+        (lambda _: np.array([[0.3, 0, 0.3], [0, np.nan, 0]]), "target 1: .*not finite"),
         (lambda T: T * np.array([1.0, 1.1, 1.0])[:, None, None], "target 1: .*violation of 0.21"),
         (lambda _: "abc", "targets"),
     ],

@@ -185,7 +185,7 @@ def test_a_rotation_that_is_none_is_refused_with_its_size() -> None:
         outcome = solve_goal(tables_of(chain), settings(chain), goal, neutral(chain))
         assert outcome[descent.CODE] == descent.BAD_GOAL
         assert outcome[descent.AMOUNT] == pytest.approx(size)
-    goal = aim.pointing_goal(np.zeros(3), np.array([0, 0, 2.0]), np.array([1.0, 0, 0]))
+    goal = np.array([[0.0, 1, 0, 0], [0, 0, 0, 0], [2, 0, 0, 0], [0, 0, 0, 1]])
     assert aim.goal_violation(aim.POINTING, goal) == pytest.approx(1.0)
     assert aim.goal_violation(aim.POSITION, goal) == 0.0
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import io
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -28,14 +30,17 @@ def chains_of(name: str) -> list:
     return [model.chain(c) for c in model.chain_frames] + [model.chain(*p) for p in EXTRA_PATHS.get(name, [])]
 
 
-def whole_robot_pose(name: str, posture: dict[str, float], base: str, tip: str) -> np.ndarray:
-    """Pinocchio on the unreduced model that it builds from the file itself, not from our reading of it."""
-    model = robot(name)
-    full = pin.buildModelFromXML(pathlib_read(model.document.path))
-    data = full.createData()
-    values = model.expand(posture)
-    q = pin.neutral(full)
-    for joint_name, value in values.items():
+@cache
+def file_model(name: str) -> pin.Model:
+    """Pinocchio's model of the file itself, not of our reading of it."""
+    return pin.buildModelFromXML(Path(robot(name).document.path).read_text(encoding="utf-8"))
+
+
+def file_pose(name: str, posture: dict[str, float], base: str, tip: str) -> np.ndarray:
+    """T_base_tip by Pinocchio on the whole robot."""
+    full = file_model(name)
+    data, q = full.createData(), pin.neutral(full)
+    for joint_name, value in robot(name).expand(posture).items():
         joint = full.joints[full.getJointId(joint_name)]
         if joint.nq == 2:
             q[joint.idx_q : joint.idx_q + 2] = np.cos(value), np.sin(value)
@@ -46,50 +51,40 @@ def whole_robot_pose(name: str, posture: dict[str, float], base: str, tip: str) 
     return data.oMf[base_id].actInv(data.oMf[tip_id]).homogeneous
 
 
-def pathlib_read(path: str) -> str:
-    with open(path, encoding="utf-8") as file:  # noqa: PTH123 - the path is text here
-        return file.read()
-
-
-@pytest.mark.parametrize("name", BUNDLED)
+@pytest.mark.parametrize("name", [*BUNDLED, *EXAMPLES])
 def test_chain_equals_pinocchio_on_the_file_itself(name: str, rng: np.random.Generator) -> None:
+    if name in EXAMPLES:
+        needs_examples()
     for chain in chains_of(name):
-        for q in random_configurations(chain, 20, rng):
-            posture = dict(zip(chain.joint_names, q, strict=True))
-            expected = whole_robot_pose(name, posture, chain.base, chain.tip)
+        for q in random_configurations(chain, 1000, rng):
+            expected = file_pose(name, dict(zip(chain.joint_names, q, strict=True)), chain.base, chain.tip)
             np.testing.assert_allclose(chain.pose(q).homogeneous, expected, atol=1e-12, rtol=0)
 
 
 @pytest.mark.parametrize("name", [*BUNDLED, *EXAMPLES])
-def test_chain_equals_the_whole_robot_on_a_thousand_configurations(name: str, rng: np.random.Generator) -> None:
+def test_chain_equals_yourdfpy(name: str, rng: np.random.Generator) -> None:
     if name in EXAMPLES:
         needs_examples()
-    model = robot(name)
-    for chain in chains_of(name):
-        for q in random_configurations(chain, 1000, rng):
-            poses = model.link_poses(dict(zip(chain.joint_names, q, strict=True)))
-            expected = poses[chain.base].actInv(poses[chain.tip]).homogeneous
-            np.testing.assert_allclose(chain.pose(q).homogeneous, expected, atol=1e-12, rtol=0)
-
-
-@pytest.mark.parametrize("name", BUNDLED)
-def test_whole_robot_equals_yourdfpy_on_a_thousand_postures(name: str, rng: np.random.Generator) -> None:
-    model = robot(name)
-    other = yourdfpy.URDF.load(
-        io.BytesIO(pathlib_read(model.document.path).encode()),
-        build_scene_graph=True,
-        load_meshes=False,
-        build_collision_scene_graph=False,
-    )
-    chains = chains_of(name)
-    leaders = list(other.actuated_joint_names)
-    for _ in range(1000):
-        values = dict(zip(leaders, rng.uniform(-3.0, 3.0, len(leaders)), strict=True))
+    model, chains = robot(name), chains_of(name)
+    file = io.BytesIO(Path(model.document.path).read_bytes())
+    other = yourdfpy.URDF.load(file, load_meshes=False, build_collision_scene_graph=False)
+    for _ in range(1000 if chains else 0):
+        values = dict(zip(other.actuated_joint_names, rng.uniform(-3, 3, len(other.actuated_joint_names)), strict=True))
         other.update_cfg(values)
         full = model.expand(values)
         for chain in chains:
-            q = [full[joint] for joint in chain.joint_names]
             expected = other.get_transform(chain.tip, chain.base)
+            found = chain.pose([full[joint] for joint in chain.joint_names]).homogeneous
+            np.testing.assert_allclose(found, expected, atol=1e-12, rtol=0)
+
+
+def test_a_posture_places_every_link_as_the_chains_do(rng: np.random.Generator) -> None:
+    for name in BUNDLED:
+        model = robot(name)
+        for chain in chains_of(name):
+            q = random_configurations(chain, 1, rng)[0]
+            poses = model.link_poses(dict(zip(chain.joint_names, q, strict=True)))
+            expected = poses[chain.base].actInv(poses[chain.tip]).homogeneous
             np.testing.assert_allclose(chain.pose(q).homogeneous, expected, atol=1e-12, rtol=0)
 
 

@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
@@ -23,7 +21,6 @@ __all__ = [
     "POSE",
     "POSITION",
     "goal_violation",
-    "pointing_goal",
     "raw_error",
     "rotation_vector",
     "shape_rows",
@@ -33,13 +30,6 @@ POSE: Final = 0
 POSITION: Final = 1
 POINTING: Final = 2
 ORIENTATION: Final = 3
-
-
-def pointing_goal(position: Floats, tip_axis: Floats, base_axis: Floats) -> Floats:
-    """The goal (4, 4) of a pointing target: position (3,) [m], unit axis (3,) in tip axes, and in base axes."""
-    goal = np.zeros((4, 4))
-    goal[:3, 0], goal[:3, 1], goal[:3, 3], goal[3, 3] = tip_axis, base_axis, position, 1.0
-    return goal
 
 
 @leaf_jit

@@ -126,41 +126,60 @@ def solve_batch(
         UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
-    first, goals = _goals(targets)
+    wanted = _Wanted.of(targets)
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
-    ready = prepared(Problem(chain, first, tolerances), method, budget, seed)
-    starts = _starts(chain, q0, len(goals), ready.neutral)
-    n, N = len(chain.joints), len(goals)
+    ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed)
+    n, N = len(chain.joints), len(wanted.given)
+    starts = _starts(chain, q0, N, ready.neutral)
     result = BatchResult(
         chain, np.empty((N, n)), np.empty(N, np.int8), np.empty(N), np.empty(N), np.empty(N, dtype=np.int32)
     )
     for chunk in _chunks(N):
         own = starts[chunk] if len(starts) > 1 else starts
-        outcomes = solve_goals(ready.tables, ready.settings, goals[chunk], np.ascontiguousarray(own))
+        goals = wanted.goals(chunk)
+        outcomes = solve_goals(ready.tables, ready.settings, goals, np.ascontiguousarray(own))
         _refuse(outcomes, chunk.start)
-        _judge(first, tolerances, goals[chunk], outcomes, result, chunk)
-    _audit(result, first, goals, tolerances, np.random.default_rng(seed), everything=audit == "all")
+        _judge(wanted.first, tolerances, goals, outcomes, result, chunk)
+    _audit(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
     return result
 
 
-def _goals(targets: ArrayLike | Sequence[Target]) -> tuple[Target, Floats]:
-    """A target that says the kind, and the goals (N, 4, 4) of all."""
-    if isinstance(targets, Sequence) and len(targets) and all(isinstance(t, Target) for t in targets):
-        wanted: list[Any] = list(targets)
-        kinds = {(t.kind, t.weights) for t in wanted}
-        if len(kinds) > 1:
-            raise InvalidInputError("targets", "targets of one kind with the same weights", f"{len(kinds)} sorts")
-        return wanted[0], np.ascontiguousarray([t.goal for t in wanted])
-    array = np.asarray(targets) if not isinstance(targets, Sequence) or len(targets) else np.empty((0, 4, 4))
-    if array.ndim == 3 and array.shape[1:] == (4, 4):
-        flat = rows(array.reshape(len(array), 16), "targets", 16)
-        return Target("pose", np.eye(4)), flat.reshape(-1, 4, 4)
-    if array.ndim == 2 and array.shape[1] == 3:
-        goals = np.tile(np.eye(4), (len(array), 1, 1))
-        goals[:, :3, 3] = rows(array, "targets", 3)
-        return Target("position", np.eye(4)), goals
-    raise InvalidInputError("targets", "(N, 4, 4) poses, (N, 3) positions or Target objects", f"shape {array.shape}")
+@dataclass(frozen=True, eq=False, slots=True)
+class _Wanted:
+    """The targets as they came, made into what solvers take chunk by chunk.
+
+    Attributes:
+        first: A target that says kind and weights.
+        given: Poses (N, 4, 4), positions (N, 3), or goals (N, 4, 4) of `Target` objects.
+    """
+
+    first: Target
+    given: NDArray[Any]
+
+    @classmethod
+    def of(cls, targets: ArrayLike | Sequence[Target]) -> _Wanted:
+        if isinstance(targets, Sequence) and len(targets) and all(isinstance(t, Target) for t in targets):
+            wanted: list[Any] = list(targets)
+            if len(sorts := {(t.kind, t.weights) for t in wanted}) > 1:
+                raise InvalidInputError("targets", "targets of one kind with the same weights", f"{len(sorts)} sorts")
+            return cls(wanted[0], np.array([t.goal for t in wanted]))
+        given = np.empty((0, 4, 4)) if isinstance(targets, Sequence) and not len(targets) else np.asarray(targets)
+        if given.dtype.kind in "iuf" and given.ndim == 3 and given.shape[1:] == (4, 4):
+            return cls(Target("pose", np.eye(4)), given)
+        if given.dtype.kind in "iuf" and given.ndim == 2 and given.shape[1] == 3:
+            return cls(Target("position", np.eye(4)), given)
+        expected = "(N, 4, 4) poses, (N, 3) positions or Target objects"
+        raise InvalidInputError("targets", expected, f"shape {given.shape} of type {given.dtype}")
+
+    def goals(self, chunk: slice) -> Floats:
+        """The goals (k, 4, 4) of a chunk, a copy; compiled code checks the numbers."""
+        part = np.array(self.given[chunk], dtype=np.float64, order="C")
+        if part.ndim == 3:
+            return part
+        goals = np.tile(np.eye(4), (len(part), 1, 1))
+        goals[:, :3, 3] = part
+        return goals
 
 
 def _starts(chain: Chain, q0: ArrayLike | Mapping[str, float] | None, count: int, neutral: Floats) -> Floats:
@@ -193,7 +212,8 @@ def _refuse(outcomes: Floats, offset: int) -> None:
     row, amount = offset + int(bad[0]), float(outcomes[bad[0], descent.AMOUNT])
     if outcomes[bad[0], descent.CODE] == descent.BAD_START:
         raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
-    raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", f"a violation of {amount:.2g}")
+    got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
+    raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
 
 
 def _judge(
@@ -232,8 +252,7 @@ def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
 
 def _audit(
     result: BatchResult,
-    first: Target,
-    goals: Floats,
+    wanted: _Wanted,
     tolerances: Tolerances,
     rng: np.random.Generator,
     *,
@@ -243,7 +262,8 @@ def _audit(
     N = len(result)
     count = N if everything else min(N, max(AUDITED, N // 100))
     for i in range(N) if everything else rng.choice(N, count, replace=False) if N else ():
-        problem = Problem(result.chain, Target(first.kind, goals[i], first.weights), tolerances)
+        target = Target(wanted.first.kind, wanted.goals(slice(i, i + 1))[0], wanted.first.weights)
+        problem = Problem(result.chain, target, tolerances)
         measured = judge(problem, Run(result.q[i].copy(), _STATUSES[result.codes[i]]))
         errors = (
             (measured.position_error, result.position_error[i]),
