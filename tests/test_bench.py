@@ -12,7 +12,7 @@ import typer
 from typer.testing import CliRunner
 
 import nao_kin as nk
-from nao_kin.cli.app import app
+from nao_kin.cli.app import application
 from nao_kin.cli.bench import peers as peers_module
 from nao_kin.cli.bench.arms import main_arm, many_chains
 from nao_kin.cli.bench.contest import Contender, Task, contest
@@ -29,7 +29,7 @@ FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
 def bench(*arguments: str, status: int = 0) -> str:
-    done = CliRunner().invoke(app, ["bench", *arguments, "--no-goals"], catch_exceptions=False)
+    done = CliRunner().invoke(application(["bench"]), ["bench", *arguments, "--no-goals"], catch_exceptions=False)
     assert done.exit_code == status, done.output
     return done.stdout
 
