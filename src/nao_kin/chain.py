@@ -234,7 +234,7 @@ def random_configurations(chain: Chain, count: int, rng: np.random.Generator) ->
     low, high = np.abs(chain.lower) < endless, np.abs(chain.upper) < endless
     lower = np.where(low, chain.lower, np.where(high, np.minimum(-half, chain.upper - 2 * half), -half))
     upper = np.where(high, chain.upper, np.where(low, np.maximum(half, chain.lower + 2 * half), half))
-    Q = rng.uniform(lower, upper, size=(count, len(chain.joints)))
+    Q = np.clip(rng.uniform(lower, upper, size=(count, len(chain.joints))), chain.lower, chain.upper)
     if chain.limit_rules:
         Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)
     return Q

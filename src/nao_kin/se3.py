@@ -50,7 +50,7 @@ def as_pose(value: PoseLike, what: str = "pose") -> pin.SE3:
             rotation (the message gives the size of the violation).
     """
     homogeneous = matrix(value.homogeneous if isinstance(value, pin.SE3) else value, what, (4, 4))
-    if not np.array_equal(homogeneous[3], (0.0, 0.0, 0.0, 1.0)):
+    if np.abs(homogeneous[3] - (0.0, 0.0, 0.0, 1.0)).max() > ROTATION_TOLERANCE:
         raise InvalidInputError(f"{what}, last row", "(0, 0, 0, 1)", str(tuple(float(x) for x in homogeneous[3])))
     rotation = homogeneous[:3, :3]
     violation = rotation_violation(rotation)

@@ -49,11 +49,9 @@ def settings(chain: Chain, kind: str = "pose", budget: Budget | None = None, **o
 def compiled(
     chain: Chain, goal: np.ndarray, q0: np.ndarray, kind: str = "pose", budget: Budget | None = None, **options: object
 ) -> Run:
-    budget = budget or Budget()
-    trace = trace_rows(tables_of(chain), budget)
-    return run_of(
-        solve_goal(tables_of(chain), settings(chain, kind, budget, **options), goal, q0, trace), KINDS[kind], trace
-    )
+    tables, chosen = tables_of(chain), settings(chain, kind, budget or Budget(), **options)
+    trace = trace_rows(solve_goal(tables, chosen, goal, q0), len(chain.joints))
+    return run_of(solve_goal(tables, chosen, goal, q0, trace), KINDS[kind], trace)
 
 
 def reference(chain: Chain, goal: np.ndarray, q0: np.ndarray, kind: str, budget: Budget) -> Run:

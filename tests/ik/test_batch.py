@@ -146,3 +146,30 @@ def test_the_callers_arrays_are_untouched(rng: np.random.Generator) -> None:
     with pytest.raises(TypeError, match="solved"):
         bool(result)
     assert "SOLVED" in result._repr_html_()
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-16, 1e-3])
+def test_verdicts_at_the_edge_of_the_tolerance_are_no_disagreement(tolerance: float, rng: np.random.Generator) -> None:
+    chain = robot("nao_v50_h25").chain("left_arm")
+    Q = random_configurations(chain, 100, rng)
+    targets = chain.poses(Q)
+    targets[:, 2, 3] += tolerance
+    tolerances, budget = nk.Tolerances(position=tolerance, rotation=1.0), nk.Budget(iterations=0, restarts=0)
+    result = nk.solve_batch(chain, targets, Q, tolerances=tolerances, budget=budget, audit="all")
+    assert len(result) == 100
+
+
+def test_large_numbers_are_no_disagreement(rng: np.random.Generator) -> None:
+    table = nk.DHChain.from_table([(0.3, 0, 0, 0.7)], "standard")
+    once = nk.Budget(iterations=0, restarts=0)
+    for q in (1e8, 1e300):
+        nk.solve_batch(table, [[0.3, 0.0, 0.0]], [q], budget=once, audit="all")
+    far = nk.DHChain.from_table([(3e7, 0.5, 1e6, 0)] * 3, "standard")
+    nk.solve_batch(far, far.poses(rng.uniform(-3, 3, (20, 3))), budget=once, audit="all")
+    nk.solve_batch(robot("jaco2").chain("arm"), [[1e300, 0.0, 0.0]], audit="all")
+
+
+def test_a_mask_is_not_lost() -> None:
+    masked = np.ma.masked_array(np.full((2, 3), 0.2), mask=True)
+    with pytest.raises(InvalidInputError, match="mask"):
+        nk.solve_batch(robot("jaco2").chain("arm"), masked)

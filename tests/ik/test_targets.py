@@ -126,3 +126,36 @@ def test_a_target_shows_and_copies_itself() -> None:
     np.testing.assert_array_equal(pointing.tip_axis, [1, 0, 0])
     assert target.tip_axis is None
     assert target.base_axis is None
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("free", [("rz",), ("rx", "ry", "rz")])
+def test_half_a_turn_about_a_free_axis_is_met(engine, free: tuple[str, ...]) -> None:
+    head = robot("nao_v50_h25").chain("head")
+    goal = head.pose([0.0, 0.0]).homogeneous.copy()
+    goal[:3, :3] = np.diag([-1.0, -1.0, 1.0]) @ goal[:3, :3]
+    result = nk.solve(head, Target.pose(goal, dict.fromkeys(free, 0.0)), engine=engine)
+    assert result.solved, result.message
+    assert not nk.solve(head, Target.pose(goal, {"rx": 0.0}), engine=engine).solved
+    assert nk.solve_batch(head, [Target.pose(goal, dict.fromkeys(free, 0.0))]).solved.all()
+
+
+@pytest.mark.parametrize("free", [("rx",), ("ry", "rz")])
+def test_masked_rotations_are_parts_of_the_rotation_vector(free: tuple[str, ...], rng: np.random.Generator) -> None:
+    counts = sum((name not in free) << i for i, name in enumerate(("x", "y", "z", "rx", "ry", "rz")))
+    bound = np.array([name not in free for name in ("rx", "ry", "rz")])
+    for angle in (0.0, 1e-9, 1e-3, 1.0, 2.0, math.pi - 1e-3, math.pi - 1e-7):
+        for _ in range(20):
+            axis = rng.normal(size=3)
+            axis /= np.linalg.norm(axis)
+            R = pin.SE3.Random().rotation
+            goal = np.eye(4)
+            goal[:3, :3] = pin.exp3(angle * axis) @ R
+            found = errors(KINDS["pose"], goal, counts, R, np.zeros(3))[1]
+            assert found == pytest.approx(angle * np.linalg.norm(axis[bound]), abs=1e-7)
+
+
+def test_pointing_weights_are_of_the_position() -> None:
+    with pytest.raises(InvalidInputError, match="x, y and z only"):
+        Target.pointing([0, 0, 0], [1, 0, 0], weights={"rz": 0.0})
+    assert np.linalg.norm(Target.pointing([0, 0, 0], [1e200, 0, 0]).base_axis) == 1.0

@@ -24,14 +24,14 @@ __all__ = ["COMMANDS", "application", "main"]
 _NUMBERS: Final = {"ignore_unknown_options": True}
 
 COMMANDS: Final[dict[str, dict[str, Any]]] = {
-    "demo": {},
-    "robots": {},
-    "fk": {"context_settings": _NUMBERS},
-    "ik": {},
-    "compare": {},
-    "html": {},
-    "warmup": {},
-    "bench": {},
+    "demo": {"short_help": "The main job on NAO and JACO2, and two pages."},
+    "robots": {"short_help": "The robots and document chains that load by name."},
+    "fk": {"short_help": "Where a chain's tip is.", "context_settings": _NUMBERS},
+    "ik": {"short_help": "Joints that bring a tip somewhere."},
+    "compare": {"short_help": "A table against a model, or any two chains."},
+    "html": {"short_help": "One HTML page that shows a robot."},
+    "warmup": {"short_help": "Compile ahead what later calls need."},
+    "bench": {"short_help": "Speed and success as ratios within one run."},
 }
 """The commands, in the order of the help; each is the function of that name in the module of that name."""
 
@@ -51,7 +51,7 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     for name in names:
         command = getattr(importlib.import_module(f"nao_kin.cli.{name}"), name)
         if isinstance(command, typer.Typer):
-            app.add_typer(command, name=name)
+            app.add_typer(command, name=name, **COMMANDS[name])
         else:
             app.command(**COMMANDS[name])(command)
     return app

@@ -29,8 +29,8 @@ def ik(
     rpy: Annotated[Triple | None, typer.Option(help="Wanted roll pitch yaw [rad]; without it any will do.")] = None,
     posture: Annotated[list[str] | None, typer.Option(help="NAME=VALUE, repeated: the target is its pose.")] = None,
     deg: Annotated[bool, typer.Option("--deg", help="--rpy and --posture are in degrees.")] = False,
-    method: Annotated[str, typer.Option(help="Method.")] = "lm",
-    seed: Annotated[int, typer.Option(help="Seed of the random restarts.")] = 0,
+    method: Annotated[str, typer.Option(help="A name in nao_kin.METHODS.")] = "lm",
+    seed: Annotated[int, typer.Option(help="Seed of the stored starts.")] = 0,
     html: Annotated[str | None, typer.Option(help="Write a page that shows the solution.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:

@@ -38,7 +38,7 @@ class FollowResult:
         samples: Number of samples asked for.
         status: Why it ended; `Status.SOLVED` if at the last sample.
         reason: The same for people, with the sample's number where it ended early.
-        largest_move: Largest move of a joint between consecutive samples, the start included [rad or m].
+        largest_move: Largest move of a joint between consecutive samples [rad or m].
         largest_move_at: Number of the sample it led to.
         max_position_error: Largest measured distance to a target [m].
         max_rotation_error: Largest measured angle to a wanted orientation [rad]; 0 where it is free.
@@ -127,7 +127,8 @@ def project_to_reach(chain: Chain, target: TargetLike, **options: Any) -> Target
         options: Further arguments of `nao_kin.solve`.
 
     Returns:
-        A target of the same kind that `nao_kin.solve` reaches from the same start.
+        A target of the same kind, where the chain certainly can be: the tip's own place at the nearest joints found.
+        At such a border of the reach a solver may need another start to find those joints again.
 
     Raises:
         InvalidInputError, UnknownNameError: See `nao_kin.solve`.

@@ -127,10 +127,9 @@ def settings_of(
     return settings
 
 
-def trace_rows(tables: Tables, budget: Budget) -> Floats:
-    """Room for the longest trace that a budget allows, a row (q, position error, rotation error, start) an iterate."""
-    starts = 1 + min(budget.restarts, len(tables.stored))
-    return np.empty(((budget.iterations + 1) * starts, tables.limits.shape[1] + 3))
+def trace_rows(outcome: Floats, n: int) -> Floats:
+    """Room for the trace of a solve with this outcome: a row (q, position error, rotation error, start) an iterate."""
+    return np.empty((int(outcome[descent.ITERATIONS] + outcome[descent.STARTS]), n + 3))
 
 
 def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
@@ -192,5 +191,7 @@ def _refusal(code: int, amount: float) -> InvalidInputError:
 
 
 def _trace(rows: Floats, kind: int) -> Trace:
-    rotation = np.full(len(rows), np.nan) if kind == aim.POSITION else rows[:, -2].copy()
-    return Trace(rows[:, :-3].copy(), rows[:, -3].copy(), rotation, rows[:, -1].astype(np.int64))
+    free = np.full(len(rows), np.nan)
+    position = free if kind == aim.ORIENTATION else rows[:, -3].copy()
+    rotation = free if kind == aim.POSITION else rows[:, -2].copy()
+    return Trace(rows[:, :-3].copy(), position, rotation, rows[:, -1].astype(np.int64))

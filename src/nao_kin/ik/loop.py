@@ -15,7 +15,7 @@ from nao_kin.ik import aim
 from nao_kin.ik.measure import errors
 from nao_kin.ik.problem import Problem, Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
-from nao_kin.ik.starts import make_starts, nearest_first
+from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
 
 if TYPE_CHECKING:
@@ -62,11 +62,11 @@ class Budget:
     largest_step: float = 1.0
 
     def __post_init__(self) -> None:
-        for name, least in (("iterations", 0), ("restarts", 0), ("patience", 1)):
+        for name, least, most in (("iterations", 0, 10**6), ("restarts", 0, STORED), ("patience", 1, 10**6)):
             value = getattr(self, name)
-            if not isinstance(value, int) or isinstance(value, bool) or value < least:
-                raise InvalidInputError(f"budget, {name}", f"an integer ≥ {least}", repr(value))
-        if not 0.0 < self.largest_step < math.inf:
+            if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
+                raise InvalidInputError(f"budget, {name}", f"an integer from {least} to {most}", repr(value)[:40])
+        if not isinstance(self.largest_step, (int, float)) or not 0.0 < self.largest_step < math.inf:
             raise InvalidInputError("budget, largest_step", "a finite number > 0", repr(self.largest_step))
 
 

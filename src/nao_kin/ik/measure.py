@@ -74,25 +74,45 @@ def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[
             cosine += _now(R, goal, i) * goal[i, 1]
             squared += (_now(R, goal, j) * goal[k, 1] - _now(R, goal, k) * goal[j, 1]) ** 2
         return position, math.atan2(math.sqrt(squared), cosine)
-    trace, squared, counted = -1.0, 0.0, 0.0
+    trace, squared = -1.0, 0.0
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        # Twice the sine times the axis, in base axes: the skew part of R_goal Rᵀ.
-        twice = 0.0
         for a in range(3):
             trace += goal[i, a] * R[i, a]
-            twice += goal[k, a] * R[j, a] - goal[j, a] * R[k, a]
+        twice = _twice_sine(goal, R, i)
         squared += twice * twice
-        if counts >> (3 + i) & 1:
-            counted += twice * twice
     sine = math.sqrt(squared)
     angle = math.atan2(sine, trace)
-    if counted == squared:
+    if counts >> 3 == 7:
         return position, angle
-    if sine > 1e-9:
-        return position, angle * math.sqrt(counted) / sine
-    # No turn at all, or one by exactly π, whose axis the skew part does not tell: then nothing counts as met.
-    return position, 0.0 if trace > 0.0 else angle
+    counted = 0.0
+    for i in range(3):
+        if counts >> (3 + i) & 1:
+            counted += _axis_squared(goal, R, i, sine, trace)
+    return position, angle * math.sqrt(counted)
+
+
+@jit
+def _turn(goal: Floats, R: Floats, i: int, j: int) -> float:
+    """Entry of R_goal Rᵀ, the turn in base axes that is missing."""
+    entry: float = goal[i, 0] * R[j, 0] + goal[i, 1] * R[j, 1] + goal[i, 2] * R[j, 2]
+    return entry
+
+
+@jit
+def _twice_sine(goal: Floats, R: Floats, i: int) -> float:
+    """Entry i of the missing turn's axis times twice the sine of its angle: the skew part of R_goal Rᵀ."""
+    j, k = (i + 1) % 3, (i + 2) % 3
+    return _turn(goal, R, k, j) - _turn(goal, R, j, k)
+
+
+@jit
+def _axis_squared(goal: Floats, R: Floats, i: int, sine: float, trace: float) -> float:
+    """Squared entry i of the missing turn's axis; `sine` and `trace` are twice its angle's sine and cosine."""
+    if trace > 0.0:
+        return (_twice_sine(goal, R, i) / sine) ** 2 if sine > 0.0 else 0.0
+    # Beyond a quarter turn the diagonal tells it better: E_ii = cos + (1 − cos) a_i².
+    cosine = 0.5 * trace
+    return max(0.0, (_turn(goal, R, i, i) - cosine) / (1.0 - cosine))
 
 
 @jit
@@ -120,6 +140,5 @@ def measure_many(kind: int, goals: Floats, counts: int, tips: Floats) -> tuple[F
     angle = np.arctan2(sine, trace)
     if counted_axes[3:].all():
         return position, angle
-    counted = np.linalg.norm(twice[:, counted_axes[3:]], axis=1)
-    scaled = angle * counted / np.where(sine > 1e-9, sine, 1.0)
-    return position, np.where(sine > 1e-9, scaled, np.where(trace > 0.0, 0.0, angle))
+    partly = [errors(kind, goal, counts, T[:3, :3], T[:3, 3])[1] for goal, T in zip(goals, tips, strict=True)]
+    return position, np.array(partly, dtype=np.float64)

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik import rules
+from nao_kin.ik import descent, rules
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.loop import Budget, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
@@ -138,8 +138,10 @@ def solve(
         return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine))
     ready = prepared(problem, method, budget, seed)
     start = ready.neutral if q0 is None else start_of(chain, q0)
-    rows = trace_rows(ready.tables, budget or Budget()) if trace else None
-    outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
+    outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
+    if trace and outcome[descent.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
+        rows = trace_rows(outcome, len(chain.joints))
+        outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
         return judge(problem, run_of(outcome, KINDS[wanted.kind], rows))
     except InvalidInputError:
@@ -155,6 +157,8 @@ def prepared(problem: Problem, method: str, budget: Budget | None, seed: int) ->
         UnknownNameError: No such method; carries near matches.
     """
     target, tolerances = problem.target, problem.tolerances
+    if type(seed) is not int:
+        seed = _integer(seed)
     # The usual options make a key that costs little to compare.
     usual = tolerances is TOLERANCES and budget is None and seed == 0
     key = (method, target.kind, target.weights, None if usual else (tolerances, budget, seed))
@@ -201,10 +205,16 @@ def _checked(problem: Problem, method: str, seed: int) -> Method:
         raise InvalidInputError("chain", expected, f"a {type(problem.chain).__name__}")
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
-    if not isinstance(seed, int) or seed < 0:
+    if _integer(seed) < 0:
         raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
     chosen, kind = METHODS[method], problem.target.kind
     if kind not in chosen.targets:
         expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
         raise InvalidInputError("target", expected, f"a {kind} target")
     return chosen
+
+
+def _integer(seed: object) -> int:
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer):
+        raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
+    return int(seed)

@@ -66,7 +66,7 @@ class Trace:
 
     Attributes:
         q: Joints (k, n) [rad or m].
-        position_error: Position errors (k,) [m].
+        position_error: Position errors (k,) [m]; NaN where the target leaves the position free.
         rotation_error: Rotation errors (k,) [rad]; NaN where the target leaves the orientation free.
         start: Number of the start that the iterate belongs to (k,); 0 is the caller's.
     """

@@ -108,15 +108,19 @@ class Target:
             p_base: The wanted position of the tip (3,) [m].
             base_axis: Where to point, in base axes (3,); of any length but 0.
             tip_axis: What points, in tip axes (3,); of any length but 0.
-            weights: As for `pose`.
+            weights: As for `pose`, of the position only.
 
         Raises:
             InvalidInputError: Wrong shapes, not finite, an axis of length 0, or bad weights.
         """
+        chosen = _weights(weights)
+        if chosen[3:] != _ALL[3:]:
+            expected = "weights of x, y and z only; turning about the pointing axis is free anyway"
+            raise InvalidInputError("weights", expected, str(list(chosen)))
         goal = np.eye(4)
         goal[:3, 0], goal[:3, 1], goal[:3, 2] = _unit(tip_axis, "tip_axis"), _unit(base_axis, "base_axis"), 0.0
         goal[:3, 3] = vector(p_base, "target position", 3)
-        return cls("pointing", goal, _weights(weights))
+        return cls("pointing", goal, chosen)
 
     @classmethod
     def of(cls, value: TargetLike) -> Target:
@@ -180,11 +184,13 @@ def _weights(given: WeightsLike) -> tuple[float, ...]:
     weights = tuple(vector(given, "weights", 6).tolist())
     if min(weights) < 0.0 or max(weights) == 0.0:
         raise InvalidInputError("weights", "numbers ≥ 0, not all 0", str(list(weights)))
-    return weights
+    largest = max(weights)
+    return tuple(weight / largest for weight in weights) if largest != 1.0 else weights
 
 
 def _unit(axis: ArrayLike, what: str) -> Floats:
     given = vector(axis, what, 3)
+    given = given / max(1.0, float(np.abs(given).max()))  # the square of a huge entry would overflow
     length = float(np.linalg.norm(given))
     if length < _SHORTEST:
         raise InvalidInputError(what, "a direction", f"{given.tolist()}, which has none")
