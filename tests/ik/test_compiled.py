@@ -227,7 +227,7 @@ def test_every_iterate_is_inside_the_limits(name, part, kind, rng: np.random.Gen
         assert run.trace is not None
         assert len(run.trace.q) == run.iterations + run.starts
         assert all(in_limits(chain, q, 1e-12) for q in run.trace.q)
-                    assert np.isfinite(run.trace.position_error).all() == (kind != "orientation")
+        assert np.isfinite(run.trace.position_error).all() == (kind != "orientation")
 
 
 def test_moving_inside_is_the_chains_rule(rng: np.random.Generator) -> None:
