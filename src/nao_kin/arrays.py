@@ -60,7 +60,7 @@ def _floats(value: ArrayLike, what: str, expected: str) -> Floats:
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInputError(what, expected, f"{_short(value)} ({error})") from None
     # Text, truth values, dates and objects would all turn into numbers that nobody meant; a mask would be lost.
-    if given.dtype.kind not in "iuf" or hasattr(value, "mask"):  # numpy.ma itself takes 20 ms to import
+    if given.dtype.kind not in "iuf" or hasattr(value, "mask"):  # numpy.ma itself is slow to import
         raise InvalidInputError(what, expected, f"{_short(value)} of type {given.dtype}")
     return np.array(given, dtype=np.float64, order="C")
 

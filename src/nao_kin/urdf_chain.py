@@ -216,7 +216,7 @@ class UrdfChain:
         return compiled_jacobians(self, Q)
 
     def _joint_values(self, q: ArrayLike) -> Floats:
-        # What numpy needs to check a vector costs three times the kinematics, so the usual case is decided by hand: the
+        # What numpy needs to check a vector costs more than the kinematics, so the usual case is decided by hand: the
         # product with zeros is 0 for finite numbers only.
         if type(q) is np.ndarray and q.dtype is _FLOAT64 and q.shape == self._shape and q.dot(self._zeros) == 0.0:
             values: Floats = q

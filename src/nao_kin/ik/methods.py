@@ -121,7 +121,7 @@ def solve(
         InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
         UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
     """
-    # The usual forms by hand: compiled code checks their numbers in passing, for a tenth of what numpy takes.
+    # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
         wanted = Target("pose", target.copy())
     elif type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (3,):

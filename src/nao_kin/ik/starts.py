@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["STORED", "Starts", "make_starts", "nearest_first"]
 
 STORED: Final = 256
-"""How many. Twice as many save 2 % of the iterations and double the time to look through them."""
+"""How many. More of them save few iterations and take longer to look through."""
 
 CLOSENESS: Final = 4.0
 """A tip that is off by as much as the tips of all configurations scatter weighs this much against |R − R_target|²."""

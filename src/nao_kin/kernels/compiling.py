@@ -223,7 +223,7 @@ class _Announcer(compiler_events.Listener):
         self.said = True
         how_often = "once" if cache_folder() else "in every process, for want of a cache folder"
         if sys.stderr is not None:
-            print(f"nao_kin: compiling kernels for this machine, {how_often}; 2 to 10 s …", file=sys.stderr)  # noqa: T201
+            print(f"nao_kin: compiling kernels for this machine, {how_often}; some seconds …", file=sys.stderr)  # noqa: T201
 
     def on_end(self, event: Any) -> None:
         """A compilation ended."""

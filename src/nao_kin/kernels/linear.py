@@ -1,7 +1,7 @@
 """Small dense linear algebra for compiled loops: nothing is allocated, results go to the caller's arrays.
 
 Six rows, and six joints, have a branch of their own with the same code: a size that the compiler knows lets it unroll
-the loops, which makes a whole solve a tenth faster.
+the loops.
 """
 
 from __future__ import annotations
