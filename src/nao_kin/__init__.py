@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from nao_kin.ik.along import project_to_reach as project_to_reach
     from nao_kin.ik.batch import BatchResult as BatchResult
     from nao_kin.ik.batch import solve_batch as solve_batch
+    from nao_kin.ik.catalogue import METHODS as METHODS
     from nao_kin.ik.loop import Budget as Budget
-    from nao_kin.ik.methods import METHODS as METHODS
     from nao_kin.ik.methods import solve as solve
     from nao_kin.ik.problem import IKResult as IKResult
     from nao_kin.ik.problem import Status as Status
@@ -52,7 +52,7 @@ _HOME = {
     "FollowResult": "ik.along",
     "IKResult": "ik.problem",
     "LimitRule": "chain",
-    "METHODS": "ik.methods",
+    "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
     "Robot": "robot",
     "Status": "ik.problem",

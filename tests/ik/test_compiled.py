@@ -15,7 +15,7 @@ import pytest
 
 from nao_kin.chain import in_limits, into_limits, neutral, random_configurations
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, descent, rules
+from nao_kin.ik import aim, descent
 from nao_kin.ik.compiled import run_of, solve_goal, solve_goals, tables_of
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
@@ -72,17 +72,6 @@ def test_runs_without_success_end_like_the_reference_loop(rng: np.random.Generat
         assert ours.ended is theirs.ended
         assert ours.misses_by == pytest.approx(theirs.misses_by, abs=1e-9)
         np.testing.assert_allclose(errors(chain, ours.q, goal), errors(chain, theirs.q, goal), atol=1e-6)
-
-
-def test_the_rule_is_its_formula(rng: np.random.Generator) -> None:
-    for m, n in [(6, 6), (6, 7), (3, 5), (6, 3), (3, 2)]:
-        J, e, step = rng.standard_normal((m, n)), 0.1 * rng.standard_normal(m), np.empty(n)
-        rules.levenberg_marquardt(J, e, np.empty((m, m)), np.empty(m), step)
-        damping = rules.DAMPING * (e @ e) + rules.LEAST_DAMPING
-        np.testing.assert_allclose(step, np.linalg.solve(J.T @ J + damping * np.eye(n), J.T @ e), atol=1e-9)
-        np.testing.assert_array_equal(
-            rules.levenberg_marquardt.py_func(J, e, np.empty((m, m)), np.empty(m), step), None
-        )
 
 
 def test_solve_positive_solves(rng: np.random.Generator) -> None:

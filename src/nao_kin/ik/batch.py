@@ -105,6 +105,7 @@ def solve_batch(
     budget: Budget | None = None,
     seed: int = 0,
     audit: Literal["sample", "all"] = "sample",
+    parameters: Mapping[str, float] | None = None,
 ) -> BatchResult:
     """Solves for many targets on all cores; a row is what `nao_kin.solve` would give, to the last bit.
 
@@ -120,16 +121,17 @@ def solve_batch(
         budget: How long to try for each.
         seed: For the stored starts and the sample.
         audit: ``"sample"`` or ``"all"``.
+        parameters: What to tune the method with, see `nao_kin.solve`.
 
     Raises:
         InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds.
-        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
+        UnknownNameError: No such method, parameter, or joint that the start names; carries near matches.
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
     wanted = _Wanted.of(targets)
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
-    ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed)
+    ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed, parameters)
     n, N = len(chain.joints), len(wanted.given)
     starts = _starts(chain, q0, N, ready.neutral)
     result = BatchResult(

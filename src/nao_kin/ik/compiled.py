@@ -10,8 +10,10 @@ import numpy as np
 
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim, descent
+from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.limits import packed_rules
@@ -19,6 +21,8 @@ from nao_kin.kernels.motion import packed_joints
 from nao_kin.se3 import ROTATION_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
@@ -98,6 +102,8 @@ def settings_of(
     tolerances: Tolerances,
     weights: ArrayLike = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
     from_stored: bool = False,
+    parameters: Sequence[float] = (),
+    orientation_error: int = ROTATION_VECTOR,
 ) -> Floats:
     """What is wanted and how long to try, as one array; make it once for many calls.
 
@@ -110,6 +116,8 @@ def settings_of(
         weights: Weight of each base axis (6,), position x y z, rotation x y z; 0 leaves it free. Other weights than 1
             decide which compromise is found where not all can be met, never what counts as reached.
         from_stored: Start at the stored configuration nearest to the target, and not at q0.
+        parameters: Those of the rule, in its order.
+        orientation_error: A form of it, see `nao_kin.ik.orientation`.
     """
     settings = np.zeros(descent.SETTINGS)
     settings[descent.KIND], settings[descent.RULE] = kind, rule
@@ -124,6 +132,8 @@ def settings_of(
     settings[descent.WEIGHTS : descent.WEIGHTS + 6] = weights
     settings[descent.CENTRE : descent.OUTER + 1] = tables.shell
     settings[descent.CLOSENESS] = tables.closeness
+    settings[descent.ORIENTATION_ERROR] = orientation_error
+    settings[descent.GAINS : descent.GAINS + len(parameters)] = parameters
     return settings
 
 
@@ -145,11 +155,19 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
     t = tables
     if trace is None:
         work = np.empty(t.work_size)
-        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work)
+        memory = _memory(tables, settings)
+        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
         return work[: t.outcome_size]
-    outcome, scratch = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size)
-    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch)
+    outcome, scratch, memory = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size), _memory(t, settings)
+    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
     return outcome
+
+
+def _memory(tables: Tables, settings: Floats) -> Floats | None:
+    """What methods other than the default need besides."""
+    if settings[descent.RULE] == LEVENBERG_MARQUARDT:
+        return None
+    return np.empty(descent.memory_size(tables.limits.shape[1]))
 
 
 def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
@@ -158,8 +176,8 @@ def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> 
     An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.
     """
     t = tables
-    outcomes = np.empty((len(goals), t.outcome_size))
-    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size)
+    outcomes, memory = np.empty((len(goals), t.outcome_size)), _memory(t, settings)
+    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size, memory)
     return outcomes
 
 

@@ -13,14 +13,14 @@ from nao_kin.chain import into_limits
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim
 from nao_kin.ik.measure import errors
+from nao_kin.ik.orientation import ROTATION_VECTOR, recast_rows
 from nao_kin.ik.problem import Problem, Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.rules import update
 from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import pinocchio as pin
 
     from nao_kin.arrays import Floats
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
     from nao_kin.ik.target import Target
     from nao_kin.tolerances import Tolerances
 
-    UpdateRule = Callable[[Floats, Floats, Floats, Floats, Floats], None]
-
-__all__ = ["POLISHED", "REACHED", "Budget", "run_reference"]
+__all__ = ["PATIENCE_ONCE_REACHED", "POLISHED", "REACHED", "Budget", "Update", "run_reference"]
 
 
 REACHED: Final = 0.99
@@ -40,6 +38,25 @@ when the judge measures again with another forward kinematics."""
 POLISHED: Final = 1e-3
 """Error in units of its tolerance at which a search ends at once; until then it goes on while the error falls. One
 more step is cheap, and near a target Newton's convergence makes it a thousandfold gain."""
+
+
+PATIENCE_ONCE_REACHED: Final = 5
+"""Iterations without halving the error after which polishing ends, however patient the search was until then."""
+
+
+@dataclass(frozen=True, slots=True)
+class Update:
+    """A method as the loops run it.
+
+    Attributes:
+        rule: Code of the update rule, see `nao_kin.ik.rules`.
+        parameters: Its parameters, in its order.
+        orientation_error: Form of the orientation error that it sees, see `nao_kin.ik.orientation`.
+    """
+
+    rule: int
+    parameters: tuple[float, ...]
+    orientation_error: int = ROTATION_VECTOR
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +88,7 @@ class Budget:
 
 
 def run_reference(
-    problem: Problem, rule: UpdateRule, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool = False
+    problem: Problem, method: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool = False
 ) -> Run:
     """Runs starts until one reaches the target or the budget is spent, and returns the best joints found.
 
@@ -81,7 +98,7 @@ def run_reference(
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
     misses_by, goal = _reachable(problem)
-    search = _Search(problem.chain, goal, problem.tolerances, rule, budget, keep_trace)
+    search = _Search(problem.chain, goal, problem.tolerances, method, budget, keep_trace)
     ended = search.descend(start)
     if ended is not Status.SOLVED and not misses_by:
         further = nearest_first(make_starts(problem.chain, rng), goal)
@@ -122,7 +139,7 @@ class _Search:
     chain: Chain
     target: Target
     tolerances: Tolerances
-    rule: UpdateRule
+    method: Update
     budget: Budget
     keep_trace: bool
     best_q: Floats = field(default_factory=lambda: np.empty(0))
@@ -133,6 +150,7 @@ class _Search:
 
     def __post_init__(self) -> None:
         self.goal, self.weights, self.kind = self.target.goal, np.array(self.target.weights), KINDS[self.target.kind]
+        self.parameters = np.array(self.method.parameters, dtype=np.float64)
         self.bound = {"position": slice(0, 3), "orientation": slice(3, 6)}.get(self.target.kind, slice(0, 6))
 
     def descend(self, q: Floats) -> Status:
@@ -151,7 +169,7 @@ class _Search:
             previous, waited = merit, waited + 1
             if merit < 0.5 * halved:
                 halved, waited = merit, 0
-            if waited >= self.budget.patience:
+            if waited >= (min(self.budget.patience, PATIENCE_ONCE_REACHED) if reached else self.budget.patience):
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
@@ -164,22 +182,31 @@ class _Search:
 
     def _step(self, q: Floats, e: Floats, tip: Floats) -> Floats:
         full = np.ascontiguousarray(self.chain.jacobian(q))
+        recast_rows(self.method.orientation_error, self.goal, tip, e, full)
         aim.shape_rows(self.kind, self.goal, self.weights, tip, e, full)
         J, e = full[self.bound], e[self.bound]
         uphill = J.T @ e
         held = ((q <= self.chain.lower) & (uphill < 0.0)) | ((q >= self.chain.upper) & (uphill > 0.0))
-        m, step = len(e), np.empty_like(q)
-        self.rule(np.ascontiguousarray(np.where(held, 0.0, J)), e, np.empty((m, m)), np.empty(m), step)
+        m, steps = len(e), np.empty((2, len(q)))
+        J = np.ascontiguousarray(np.where(held, 0.0, J))
+        proposed = update(self.method.rule, J, e, self.parameters, np.empty((m, m)), np.empty(m), steps)
+        return min(map(self._bounded, steps[:proposed]), key=lambda step: self._merit_after(q, step, proposed))
+
+    def _bounded(self, step: Floats) -> Floats:
         largest = float(np.abs(step).max())
         return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
 
+    def _merit_after(self, q: Floats, step: Floats, proposed: int) -> float:
+        """How good the joints after a step are; needed only where there is a choice."""
+        if proposed == 1 or not np.isfinite(step).all():
+            return math.inf
+        T_base_tip, e = self.chain.pose(into_limits(self.chain, q + step)), np.empty(6)
+        aim.raw_error(self.kind, self.goal, np.concatenate([T_base_tip.rotation.ravel(), T_base_tip.translation]), e)
+        return self._merit(e)
+
     def _note(self, q: Floats, e: Floats, T_base_tip: pin.SE3) -> tuple[float, bool]:
         """The larger weighted error in units of its tolerance, and whether the target is reached."""
-        weighted = self.weights * e
-        merit = max(
-            _ratio(float(np.linalg.norm(weighted[:3])), self.tolerances.position),
-            _ratio(float(np.linalg.norm(weighted[3:])), self.tolerances.rotation),
-        )
+        merit = self._merit(e)
         if merit < self.best_merit or not self.best_q.size:
             self.best_q, self.best_merit = q, merit
         position, rotation = errors(
@@ -189,6 +216,13 @@ class _Search:
             self.rows.append((q, position, rotation, self.starts - 1))
         far = position > REACHED * self.tolerances.position or rotation > REACHED * self.tolerances.rotation
         return merit, not far
+
+    def _merit(self, e: Floats) -> float:
+        weighted = self.weights * e
+        return max(
+            _ratio(float(np.linalg.norm(weighted[:3])), self.tolerances.position),
+            _ratio(float(np.linalg.norm(weighted[3:])), self.tolerances.rotation),
+        )
 
     def trace(self) -> Trace:
         """What was iterated, all starts in one."""

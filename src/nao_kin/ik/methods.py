@@ -1,69 +1,36 @@
-"""The methods by name, and `solve`."""
+"""`solve`: a target, a method of the table, and a result that was measured again."""
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pinocchio as pin
 
 from nao_kin.chain import Chain, configuration, neutral
-from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik import descent, rules
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik import descent
+from nao_kin.ik.catalogue import METHODS, Method, method_named
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
-from nao_kin.ik.loop import Budget, run_reference
+from nao_kin.ik.loop import Budget, Update, run_reference
+from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
-from nao_kin.ik.target import KINDS, Target, TargetKind, TargetLike
+from nao_kin.ik.scales import scales_of
+from nao_kin.ik.target import KINDS, Target, TargetLike
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.loop import UpdateRule
 
 __all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
 
 Engine = Literal["compiled", "reference"]
-
-
-@dataclass(frozen=True, slots=True)
-class Method:
-    """One row of the table of methods.
-
-    Attributes:
-        name: What `solve` takes.
-        rule: The update rule, called by the reference loop.
-        code: The same rule's number in compiled code.
-        targets: Kinds of target it handles.
-        reference: Where it comes from.
-        choose_it: When to.
-    """
-
-    name: str
-    rule: UpdateRule
-    code: int
-    targets: tuple[TargetKind, ...]
-    reference: str
-    choose_it: str
-
-
-METHODS: Final[dict[str, Method]] = {
-    method.name: method
-    for method in (
-        Method(
-            name="lm",
-            rule=rules.levenberg_marquardt,
-            code=rules.LEVENBERG_MARQUARDT,
-            targets=("pose", "position", "pointing", "orientation"),
-            reference="Chan and Lawrence 1988, error-damped least squares",
-            choose_it="by default: quadratic convergence near the target, bounded steps at singularities",
-        ),
-    )
-}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -98,6 +65,8 @@ def solve(
     seed: int = 0,
     engine: Engine = "compiled",
     trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+    jump: float | None = None,
 ) -> IKResult:
     """Joints that bring the tip to a target, measured again before they are returned.
 
@@ -113,13 +82,17 @@ def solve(
         engine: ``"compiled"``, or ``"reference"`` for the same iteration in Python on the chain's own forward
             kinematics and frame Jacobian.
         trace: Keep every iterate in the result.
+        parameters: What to tune the method with, by the names in its row of `METHODS`; the others keep their defaults.
+        jump: Largest move of a joint from the start to the solution [rad or m]; one that needs more is
+            `Status.JUMPED`. No limit unless given.
 
     Returns:
         A result whether solved or not: ask ``result.solved`` and read ``result.status``.
 
     Raises:
         InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
-        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
+        UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
+            matches.
     """
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
@@ -135,33 +108,40 @@ def solve(
     problem = Problem(chain, wanted, tolerances)
     if engine != "compiled":
         problem = Problem(chain, Target.of(target), tolerances)
-        return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine))
-    ready = prepared(problem, method, budget, seed)
+        return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine, parameters, jump))
+    ready = prepared(problem, method, budget, seed, parameters)
     start = ready.neutral if q0 is None else start_of(chain, q0)
+    allowed = math.inf if jump is None else _positive(jump)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
     if trace and outcome[descent.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
         outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
-        return judge(problem, run_of(outcome, KINDS[wanted.kind], rows))
+        run = run_of(outcome, KINDS[wanted.kind], rows)
     except InvalidInputError:
         Target.of(target)  # says it better, if it is the target that makes no sense
         raise
+    if jump is not None:
+        run.start, run.jump = start, allowed
+    return judge(problem, run)
 
 
-def prepared(problem: Problem, method: str, budget: Budget | None, seed: int) -> Prepared:
+def prepared(
+    problem: Problem, method: str, budget: Budget | None, seed: int, parameters: Mapping[str, float] | None = None
+) -> Prepared:
     """What solves of this kind share, made once for each set of options.
 
     Raises:
-        InvalidInputError: Not a chain, a bad seed, or a target the method cannot do.
-        UnknownNameError: No such method; carries near matches.
+        InvalidInputError: Not a chain, a bad seed or parameter, or a target the method cannot do.
+        UnknownNameError: No such method or parameter; carries near matches.
     """
     target, tolerances = problem.target, problem.tolerances
     if type(seed) is not int:
         seed = _integer(seed)
     # The usual options make a key that costs little to compare.
-    usual = tolerances is TOLERANCES and budget is None and seed == 0
-    key = (method, target.kind, target.weights, None if usual else (tolerances, budget, seed))
+    usual = tolerances is TOLERANCES and budget is None and seed == 0 and not parameters
+    options = None if usual else (tolerances, budget, seed, tuple(sorted((parameters or {}).items())))
+    key = (method, target.kind, target.weights, options)
     try:
         return _PREPARED[problem.chain][key]
     except (KeyError, TypeError):
@@ -170,8 +150,16 @@ def prepared(problem: Problem, method: str, budget: Budget | None, seed: int) ->
     if len(kept) >= _KEPT:
         kept.clear()
     tables = tables_of(problem.chain, seed)
+    update = _update(problem, chosen, tables, parameters)
     settings = settings_of(
-        tables, KINDS[target.kind], chosen.code, budget or Budget(), tolerances, weights=target.weights
+        tables,
+        KINDS[target.kind],
+        update.rule,
+        budget or chosen.budget,
+        tolerances,
+        weights=target.weights,
+        parameters=update.parameters,
+        orientation_error=update.orientation_error,
     )
     ready = kept[key] = Prepared(tables, settings, neutral(problem.chain))
     return ready
@@ -190,28 +178,54 @@ def start_of(chain: Chain, q0: ArrayLike | Mapping[str, float]) -> Floats:
 
 
 def _run_in_python(
-    problem: Problem, q0: Any, method: str, budget: Budget | None, seed: int, trace: bool, engine: str
+    problem: Problem,
+    q0: Any,
+    method: str,
+    budget: Budget | None,
+    seed: int,
+    trace: bool,
+    engine: str,
+    parameters: Mapping[str, float] | None,
+    jump: float | None,
 ) -> Run:
     if engine != "reference":
         raise InvalidInputError("engine", "'compiled' or 'reference'", repr(engine))
     chosen, chain = _checked(problem, method, seed), problem.chain
     start = neutral(chain) if q0 is None else configuration(chain, start_of(chain, q0))
-    return run_reference(problem, chosen.rule, start, budget or Budget(), np.random.default_rng(seed), trace)
+    update = _update(problem, chosen, tables_of(chain, seed), parameters)
+    run = run_reference(problem, update, start, budget or chosen.budget, np.random.default_rng(seed), trace)
+    if jump is not None:
+        run.start, run.jump = start, _positive(jump)
+    return run
+
+
+def _update(problem: Problem, method: Method, tables: Tables, parameters: Mapping[str, float] | None) -> Update:
+    """The method with its parameters, those that depend on the chain from its stored configurations."""
+    chain = problem.chain
+    scales = scales_of(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
+    return Update(method.code, method.tuned(parameters or {}, scales), method.orientation_error)
 
 
 def _checked(problem: Problem, method: str, seed: int) -> Method:
     if not hasattr(problem.chain, "joint_path"):
         expected = "a chain, as robot.chain('left_arm') gives one"
         raise InvalidInputError("chain", expected, f"a {type(problem.chain).__name__}")
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
     if _integer(seed) < 0:
         raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
-    chosen, kind = METHODS[method], problem.target.kind
-    if kind not in chosen.targets:
+    chosen, target = method_named(method), problem.target
+    if target.kind not in chosen.targets:
         expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
-        raise InvalidInputError("target", expected, f"a {kind} target")
+        raise InvalidInputError("target", expected, f"a {target.kind} target")
+    if chosen.orientation_error != ROTATION_VECTOR and target.weights[3:] != (1.0, 1.0, 1.0):
+        expected = f"weights of 1 for rx, ry and rz, because method {method!r} has other coordinates of the orientation"
+        raise InvalidInputError("weights", expected, str(list(target.weights)))
     return chosen
+
+
+def _positive(jump: object) -> float:
+    if isinstance(jump, bool) or not isinstance(jump, int | float | np.floating) or not jump > 0.0:
+        raise InvalidInputError("jump", "a number > 0 [rad or m]", repr(jump))
+    return float(jump)
 
 
 def _integer(seed: object) -> int:

@@ -1,0 +1,229 @@
+"""The table of methods: what each is, where it comes from, what it can do and when to choose it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, Literal
+
+from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.ik import rules
+from nao_kin.ik.loop import Budget
+from nao_kin.ik.orientation import EULER, QUATERNION, ROTATION_VECTOR
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from nao_kin.ik.scales import Scales
+    from nao_kin.ik.target import TargetKind
+
+__all__ = ["METHODS", "Method", "Parameter", "method_named"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number that a method can be tuned with.
+
+    Attributes:
+        name: What `solve(..., parameters={name: value})` takes.
+        factor: The default, in units of `per`.
+        per: What the default is measured by: ``""`` for a plain number, or a scale of the chain over its stored
+            configurations: ``"σ"`` the largest singular value, ``"1/σ²"``, or ``"w"`` the largest manipulability.
+        meaning: What it is.
+    """
+
+    name: str
+    factor: float
+    per: Literal["", "σ", "1/σ²", "w"]
+    meaning: str
+
+    def default(self, scales: Scales | None) -> float:
+        """The default for a chain of these scales; those without a scale need none."""
+        if not self.per or scales is None:
+            return self.factor
+        sigma = scales.singular_value
+        return self.factor * {"σ": sigma, "1/σ²": 1.0 / (sigma * sigma), "w": scales.manipulability}[self.per]
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """One row of the table of methods.
+
+    Attributes:
+        name: What `solve` takes.
+        code: The update rule's number, see `nao_kin.ik.rules`.
+        targets: Kinds of target it handles.
+        parameters: What it can be tuned with, in the rule's order.
+        reference: Where it comes from.
+        choose_it: When to.
+        orientation_error: Form of the orientation error it sees, see `nao_kin.ik.orientation`.
+        budget: How long it tries unless told otherwise; slow methods need more patience.
+    """
+
+    name: str
+    code: int
+    targets: tuple[TargetKind, ...]
+    parameters: tuple[Parameter, ...]
+    reference: str
+    choose_it: str
+    orientation_error: int = ROTATION_VECTOR
+    budget: Budget = field(default_factory=Budget)
+
+    @property
+    def scaled(self) -> bool:
+        """Whether a default depends on the chain."""
+        return any(parameter.per for parameter in self.parameters)
+
+    def tuned(self, given: Mapping[str, float], scales: Scales | None) -> tuple[float, ...]:
+        """The parameters in the rule's order, defaults for those not given.
+
+        Raises:
+            UnknownNameError: The method has no such parameter; carries near matches.
+            InvalidInputError: A value is not a finite number above 0.
+        """
+        names = [parameter.name for parameter in self.parameters]
+        for name, value in given.items():
+            if name not in names:
+                raise UnknownNameError("parameter", name, names, f"method {self.name!r}")
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
+                raise InvalidInputError(f"parameter {name}", "a finite number > 0", repr(value)[:40])
+        return tuple(float(given.get(p.name, p.default(scales))) for p in self.parameters)
+
+
+_ALL: Final[tuple[TargetKind, ...]] = ("pose", "position", "pointing", "orientation")
+_TURNED: Final[tuple[TargetKind, ...]] = ("pose", "orientation")
+_GAIN: Final = Parameter("gain", 1.0, "", "K, scales every step")
+_SLOW: Final = Budget(iterations=5000, patience=1000)
+_STEADY: Final = Budget(iterations=1000, patience=50)
+
+_ROWS: Final = (
+    Method(
+        name="lm",
+        code=rules.LEVENBERG_MARQUARDT,
+        targets=_ALL,
+        # Smaller than the source's: steps are bounded otherwise, and less damping converges sooner.
+        parameters=(_GAIN, Parameter("damping", 0.05, "", "λ² per squared error")),
+        reference="Chan and Lawrence 1988, error-damped least squares",
+        choose_it="by default: quadratic convergence near the target, bounded steps at singularities",
+    ),
+    Method(
+        name="transpose",
+        code=rules.TRANSPOSE,
+        targets=_ALL,
+        parameters=(Parameter("gain", 1.0, "1/σ²", "K, fixed; below 2/σ² the linear error cannot grow"),),
+        reference="practicum (14); Bischoff 2016, (3.2.1.1)",
+        choose_it="to see the simplest method there is; it needs thousands of steps",
+        budget=_SLOW,
+    ),
+    Method(
+        name="transpose_buss",
+        code=rules.TRANSPOSE_BUSS,
+        targets=_ALL,
+        parameters=(_GAIN,),
+        reference="Bischoff 2016, (3.2.1.2); Buss 2004",
+        choose_it="the transpose without a gain to choose: each step is the best along its direction",
+        budget=_SLOW,
+    ),
+    Method(
+        name="pinv",
+        code=rules.PSEUDO_INVERSE,
+        targets=_ALL,
+        parameters=(_GAIN,),
+        reference="practicum (16); Bischoff 2016, (3.2.2.1)",
+        choose_it="far from singularities; near them its steps are huge",
+        budget=Budget(patience=20),
+    ),
+    Method(
+        name="combination",
+        code=rules.COMBINATION,
+        targets=_ALL,
+        parameters=(_GAIN, Parameter("transpose_gain", 1.0, "1/σ²", "K of the transpose")),
+        reference="practicum, section 1.8",
+        choose_it="to repeat the practicum: the better of pseudo-inverse and transpose at every step",
+        budget=_STEADY,
+    ),
+    Method(
+        name="newton",
+        code=rules.NEWTON,
+        targets=_ALL,
+        parameters=(_GAIN,),
+        reference="practicum (12), (13), (15), with the rotation vector as error",
+        choose_it="to see Newton's method without any damping",
+        budget=Budget(patience=20),
+    ),
+    Method(
+        name="newton_euler",
+        code=rules.NEWTON,
+        targets=_TURNED,
+        parameters=(_GAIN,),
+        reference="practicum (5), (12)",
+        choose_it="to repeat the practicum: differences of roll, pitch and yaw; fails at pitch ±90°",
+        orientation_error=EULER,
+        budget=Budget(patience=20),
+    ),
+    Method(
+        name="newton_quaternion",
+        code=rules.NEWTON,
+        targets=_TURNED,
+        parameters=(_GAIN,),
+        reference="practicum (8), (12)",
+        choose_it="to repeat the practicum: vector part of the quaternion; fails at half a turn",
+        orientation_error=QUATERNION,
+        budget=Budget(patience=20),
+    ),
+    Method(
+        name="dls",
+        code=rules.DAMPED,
+        targets=_ALL,
+        parameters=(_GAIN, Parameter("damping", 0.05, "σ", "λ, fixed")),
+        reference="Wampler 1986, damped least squares",
+        choose_it="to follow moving targets calmly, one step a sample",
+        budget=_STEADY,
+    ),
+    Method(
+        name="dls_adaptive",
+        code=rules.DAMPED_ADAPTIVE,
+        targets=_ALL,
+        parameters=(
+            _GAIN,
+            Parameter("damping", 0.1, "σ", "λ at a singularity"),
+            Parameter("threshold", 0.1, "w", "manipulability below which λ sets in"),
+        ),
+        reference="Nakamura and Hanafusa 1986",
+        choose_it="Newton's speed where the arm is regular, damping where it is not",
+        budget=_STEADY,
+    ),
+    Method(
+        name="sdls",
+        code=rules.SELECTIVELY_DAMPED,
+        targets=_ALL,
+        parameters=(_GAIN, Parameter("largest_step", math.pi / 4.0, "", "γ, bound of a joint's step [rad or m]")),
+        reference="Buss and Kim 2005",
+        choose_it="targets at the edge of reach: damps only the directions that would throw the tip",
+        budget=_STEADY,
+    ),
+    Method(
+        name="tsvd",
+        code=rules.TRUNCATED,
+        targets=_ALL,
+        parameters=(_GAIN, Parameter("threshold", 0.01, "", "σ below this part of the largest one are left out")),
+        reference="Maciejewski and Klein 1989, truncated singular value decomposition",
+        choose_it="to give up lost directions instead of damping them",
+        budget=_STEADY,
+    ),
+)
+
+METHODS: Final[dict[str, Method]] = {method.name: method for method in _ROWS}
+"""The methods by name."""
+
+
+def method_named(name: str) -> Method:
+    """The method of that name.
+
+    Raises:
+        UnknownNameError: There is none; carries near matches.
+    """
+    try:
+        return METHODS[name]
+    except (KeyError, TypeError):
+        raise UnknownNameError("method", name, METHODS) from None
