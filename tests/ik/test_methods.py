@@ -89,7 +89,7 @@ def test_one_step_is_the_reference_loops(method, name, part, kind, rng) -> None:
         checked += 1
 
 
-@pytest.mark.parametrize("method", ["lm", "dls", "dls_adaptive", "sdls", "combination", "transpose_buss"])
+@pytest.mark.parametrize("method", ["lm", "dls", "dls_adaptive", "sdls", "combination"])
 @pytest.mark.parametrize(("name", "part", "kind"), CASES)
 def test_whole_damped_runs_end_as_the_reference_loops(method, name, part, kind, rng) -> None:
     chain, budget = robot(name).chain(part), Budget(iterations=3000, restarts=0, patience=1000)

@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_kin.arrays import rows
 from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik import descent
+from nao_kin.ik import layout
 from nao_kin.ik.compiled import solve_goals
 from nao_kin.ik.measure import measure_many
 from nao_kin.ik.methods import prepared, start_of
@@ -213,11 +213,11 @@ def _chunks(count: int) -> Iterator[slice]:
 
 def _refuse(outcomes: Floats, offset: int) -> None:
     """Raises for the first row whose target or start made no sense."""
-    bad = np.flatnonzero(outcomes[:, descent.CODE] < 0.0)
+    bad = np.flatnonzero(outcomes[:, layout.CODE] < 0.0)
     if not len(bad):
         return
-    row, amount = offset + int(bad[0]), float(outcomes[bad[0], descent.AMOUNT])
-    if outcomes[bad[0], descent.CODE] == descent.BAD_START:
+    row, amount = offset + int(bad[0]), float(outcomes[bad[0], layout.AMOUNT])
+    if outcomes[bad[0], layout.CODE] == layout.BAD_START:
         raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
@@ -229,18 +229,18 @@ def _judge(
     """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
     from nao_kin.kernels.audit import tips
 
-    chain, q = result.chain, np.ascontiguousarray(outcomes[:, descent.OUTCOME :])
+    chain, q = result.chain, np.ascontiguousarray(outcomes[:, layout.OUTCOME :])
     position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
     inside = _inside(chain, q, tolerances.limits)
-    codes = outcomes[:, descent.CODE].astype(np.int8)
+    codes = outcomes[:, layout.CODE].astype(np.int8)
     ended = np.array([_STATUSES.index(status) for status in _ENDED], dtype=np.int8)[codes]
     ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
     ended[reached & inside] = _STATUSES.index(Status.SOLVED)
     ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
     result.q[chunk], result.codes[chunk] = q, ended
     result.position_error[chunk], result.rotation_error[chunk] = position, rotation
-    result.iterations[chunk] = outcomes[:, descent.ITERATIONS]
+    result.iterations[chunk] = outcomes[:, layout.ITERATIONS]
 
 
 _ENDED = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik import rules
+from nao_kin.ik.geometric import CCD, FABRIK, FOLLOW_THE_LEADER, refusal
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.orientation import EULER, QUATERNION, ROTATION_VECTOR
+from nao_kin.ik.target import AXES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from nao_kin.chain import Chain
     from nao_kin.ik.scales import Scales
-    from nao_kin.ik.target import TargetKind
+    from nao_kin.ik.target import Target, TargetKind
 
 __all__ = ["METHODS", "Method", "Parameter", "method_named"]
 
@@ -51,12 +54,14 @@ class Method:
 
     Attributes:
         name: What `solve` takes.
-        code: The update rule's number, see `nao_kin.ik.rules`.
+        code: The number of the update rule, see `nao_kin.ik.rules`, or of the sweep, see `nao_kin.ik.geometric`.
         targets: Kinds of target it handles.
         parameters: What it can be tuned with, in the rule's order.
         reference: Where it comes from.
         choose_it: When to.
         orientation_error: Form of the orientation error it sees, see `nao_kin.ik.orientation`.
+        weighs: Number of axes, in the order of `nao_kin.ik.target.AXES`, that may have weights other than 1.
+        hinges: Whether it works on chains of hinges with a motor each only.
         budget: How long it tries unless told otherwise; slow methods need more patience.
     """
 
@@ -67,12 +72,27 @@ class Method:
     reference: str
     choose_it: str
     orientation_error: int = ROTATION_VECTOR
+    weighs: int = 6
+    hinges: bool = False
     budget: Budget = field(default_factory=Budget)
 
     @property
     def scaled(self) -> bool:
         """Whether a default depends on the chain."""
         return any(parameter.per for parameter in self.parameters)
+
+    def refusal(self, chain: Chain, target: Target) -> InvalidInputError | None:
+        """Why it cannot do a target on a chain, as an error that names the remedy; None if it can."""
+        if target.kind not in self.targets:
+            expected = f"a {' or '.join(self.targets)} target, which is all that method {self.name!r} handles"
+            return InvalidInputError("target", expected, f"a {target.kind} target")
+        if set(target.weights[self.weighs :]) - {1.0}:
+            expected = f"weights of 1 for {', '.join(AXES[self.weighs :])}, as method {self.name!r} weighs them alike"
+            return InvalidInputError("weights", expected, str(list(target.weights)))
+        if self.hinges and (reason := refusal(chain.joint_path)):
+            expected = f"a chain of hinges for method {self.name!r}; 'ccd' works on any"
+            return InvalidInputError(f"chain {chain.name}", expected, f"one that is not: {reason}")
+        return None
 
     def tuned(self, given: Mapping[str, float], scales: Scales | None) -> tuple[float, ...]:
         """The parameters in the rule's order, defaults for those not given.
@@ -160,6 +180,7 @@ _ROWS: Final = (
         reference="practicum (5), (12)",
         choose_it="to repeat the practicum: differences of roll, pitch and yaw; fails at pitch ±90°",
         orientation_error=EULER,
+        weighs=3,
         budget=Budget(patience=20),
     ),
     Method(
@@ -170,6 +191,7 @@ _ROWS: Final = (
         reference="practicum (8), (12)",
         choose_it="to repeat the practicum: vector part of the quaternion; fails at half a turn",
         orientation_error=QUATERNION,
+        weighs=3,
         budget=Budget(patience=20),
     ),
     Method(
@@ -187,7 +209,7 @@ _ROWS: Final = (
         targets=_ALL,
         parameters=(
             _GAIN,
-            Parameter("damping", 0.01, "σ", "λ at a singularity"),
+            Parameter("damping", 0.005, "σ", "λ at a singularity"),
             Parameter("threshold", 0.05, "w", "manipulability below which λ sets in"),
         ),
         reference="Nakamura and Hanafusa 1986",
@@ -210,6 +232,38 @@ _ROWS: Final = (
         parameters=(_GAIN, Parameter("threshold", 1e-4, "", "σ below this part of the largest one are left out")),
         reference="Maciejewski and Klein 1989, truncated singular value decomposition",
         choose_it="to give up lost directions instead of damping them",
+        budget=_STEADY,
+    ),
+    Method(
+        name="ccd",
+        code=CCD,
+        targets=_ALL,
+        parameters=(),
+        reference="Wang and Chen 1991, cyclic coordinate descent",
+        choose_it="long chains and any joint, without a Jacobian; the error never grows",
+        weighs=0,
+        budget=_STEADY,
+    ),
+    Method(
+        name="ftl",
+        code=FOLLOW_THE_LEADER,
+        targets=("position",),
+        parameters=(),
+        reference="Brown, Latombe and Montgomery 2004, follow the leader",
+        choose_it="to see the chain dragged by its tip like a rope",
+        weighs=0,
+        hinges=True,
+        budget=_STEADY,
+    ),
+    Method(
+        name="fabrik",
+        code=FABRIK,
+        targets=("position",),
+        parameters=(),
+        reference="Bischoff 2016, Algorithm 1; Aristidou and Lasenby 2011",
+        choose_it="positions on chains of hinges, without a Jacobian",
+        weighs=0,
+        hinges=True,
         budget=_STEADY,
     ),
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, descent
+from nao_kin.ik import aim, descent, layout
 from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
@@ -80,7 +80,7 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
 
 def _tables(chain: Chain, seed: int) -> Tables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
-    joints, size = packed_joints(chain.joint_path), descent.OUTCOME + len(chain.joints)
+    joints, size = packed_joints(chain.joint_path), layout.OUTCOME + len(chain.joints)
     limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
     return Tables(
         joints=joints,
@@ -119,27 +119,27 @@ def settings_of(
         parameters: Those of the rule, in its order.
         orientation_error: A form of it, see `nao_kin.ik.orientation`.
     """
-    settings = np.zeros(descent.SETTINGS)
-    settings[descent.KIND], settings[descent.RULE] = kind, rule
-    settings[descent.MAX_ITERATIONS], settings[descent.RESTARTS] = budget.iterations, budget.restarts
-    settings[descent.PATIENCE], settings[descent.LARGEST_STEP] = budget.patience, budget.largest_step
-    settings[descent.FROM_STORED] = from_stored
-    settings[descent.POSITION_TOLERANCE], settings[descent.ROTATION_TOLERANCE] = (
+    settings = np.zeros(layout.SETTINGS)
+    settings[layout.KIND], settings[layout.RULE] = kind, rule
+    settings[layout.MAX_ITERATIONS], settings[layout.RESTARTS] = budget.iterations, budget.restarts
+    settings[layout.PATIENCE], settings[layout.LARGEST_STEP] = budget.patience, budget.largest_step
+    settings[layout.FROM_STORED] = from_stored
+    settings[layout.POSITION_TOLERANCE], settings[layout.ROTATION_TOLERANCE] = (
         tolerances.position,
         tolerances.rotation,
     )
-    settings[descent.GOAL_TOLERANCE] = ROTATION_TOLERANCE
-    settings[descent.WEIGHTS : descent.WEIGHTS + 6] = weights
-    settings[descent.CENTRE : descent.OUTER + 1] = tables.shell
-    settings[descent.CLOSENESS] = tables.closeness
-    settings[descent.ORIENTATION_ERROR] = orientation_error
-    settings[descent.GAINS : descent.GAINS + len(parameters)] = parameters
+    settings[layout.GOAL_TOLERANCE] = ROTATION_TOLERANCE
+    settings[layout.WEIGHTS : layout.WEIGHTS + 6] = weights
+    settings[layout.CENTRE : layout.OUTER + 1] = tables.shell
+    settings[layout.CLOSENESS] = tables.closeness
+    settings[layout.ORIENTATION_ERROR] = orientation_error
+    settings[layout.GAINS : layout.GAINS + len(parameters)] = parameters
     return settings
 
 
 def trace_rows(outcome: Floats, n: int) -> Floats:
     """Room for the trace of a solve with this outcome: a row (q, position error, rotation error, start) an iterate."""
-    return np.empty((int(outcome[descent.ITERATIONS] + outcome[descent.STARTS]), n + 3))
+    return np.empty((int(outcome[layout.ITERATIONS] + outcome[layout.STARTS]), n + 3))
 
 
 def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
@@ -165,9 +165,9 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
 
 def _memory(tables: Tables, settings: Floats) -> Floats | None:
     """What methods other than the default need besides."""
-    if settings[descent.RULE] == LEVENBERG_MARQUARDT:
+    if settings[layout.RULE] == LEVENBERG_MARQUARDT:
         return None
-    return np.empty(descent.memory_size(tables.limits.shape[1]))
+    return np.empty(descent.memory_size(tables.joints, tables.limits.shape[1]))
 
 
 def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
@@ -193,16 +193,16 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         InvalidInputError: The target or the start made no sense; carries the size of the violation.
     """
     told = outcome.tolist()
-    code, iterations, starts = int(told[descent.CODE]), int(told[descent.ITERATIONS]), int(told[descent.STARTS])
+    code, iterations, starts = int(told[layout.CODE]), int(told[layout.ITERATIONS]), int(told[layout.STARTS])
     if code < 0:
-        raise _refusal(code, told[descent.AMOUNT])
+        raise _refusal(code, told[layout.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
-    moved, amount = told[descent.START_MOVED] != 0.0, told[descent.AMOUNT]
-    return Run(outcome[descent.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
+    moved, amount = told[layout.START_MOVED] != 0.0, told[layout.AMOUNT]
+    return Run(outcome[layout.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:
-    if code == descent.BAD_START:
+    if code == layout.BAD_START:
         return InvalidInputError("q0", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     return InvalidInputError("target", "a rigid pose, a position, or unit axes", got)

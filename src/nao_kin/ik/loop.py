@@ -12,6 +12,7 @@ import numpy as np
 from nao_kin.chain import into_limits
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim
+from nao_kin.ik.geometric import CCD, sweep, sweep_memory
 from nao_kin.ik.measure import errors
 from nao_kin.ik.orientation import ROTATION_VECTOR, recast_rows
 from nao_kin.ik.problem import Problem, Run, Status, Trace
@@ -19,6 +20,8 @@ from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.rules import update
 from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
+from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.motion import packed_joints, place
 
 if TYPE_CHECKING:
     import pinocchio as pin
@@ -98,11 +101,11 @@ def run_reference(
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
     misses_by, goal = _reachable(problem)
-    search = _Search(problem.chain, goal, problem.tolerances, method, budget, keep_trace)
+    starts = make_starts(problem.chain, rng)
+    search = _Search(problem.chain, goal, problem.tolerances, method, budget, starts.closeness, keep_trace)
     ended = search.descend(start)
     if ended is not Status.SOLVED and not misses_by:
-        further = nearest_first(make_starts(problem.chain, rng), goal)
-        for q in itertools.islice(further, budget.restarts):
+        for q in itertools.islice(nearest_first(starts, goal), budget.restarts):
             again = search.descend(q)
             # One start that was still getting closer is worth a word: a larger budget may help.
             ended = Status.BUDGET_SPENT if again is Status.STALLED and ended is Status.BUDGET_SPENT else again
@@ -141,6 +144,7 @@ class _Search:
     tolerances: Tolerances
     method: Update
     budget: Budget
+    closeness: float
     keep_trace: bool
     best_q: Floats = field(default_factory=lambda: np.empty(0))
     best_merit: float = math.inf
@@ -173,10 +177,13 @@ class _Search:
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
-            step = self._step(q, e, tip)
-            if not np.isfinite(step).all():
-                return Status.NOT_FINITE
-            q = into_limits(self.chain, q + step)
+            if self.method.rule >= CCD:
+                q = self._swept(q)
+            else:
+                step = self._step(q, e, tip)
+                if not np.isfinite(step).all():
+                    return Status.NOT_FINITE
+                q = into_limits(self.chain, q + step)
             self.iterations += 1
         return Status.SOLVED if reached else Status.BUDGET_SPENT
 
@@ -191,6 +198,16 @@ class _Search:
         J = np.ascontiguousarray(np.where(held, 0.0, J))
         proposed = update(self.method.rule, J, e, self.parameters, np.empty((m, m)), np.empty(m), steps)
         return min(map(self._bounded, steps[:proposed]), key=lambda step: self._merit_after(q, step, proposed))
+
+    def _swept(self, q: Floats) -> Floats:
+        """The joints after a sweep; sweeps work on the flat form of the chain, here as in the compiled loop."""
+        joints, limits = packed_joints(self.chain.joint_path), np.array([self.chain.lower, self.chain.upper])
+        coupled = packed_rules(self.chain.limit_rules, self.chain.joint_names)
+        axes, tip, swept = np.empty((len(joints) - 1, 6)), np.empty(12), q.copy()
+        place(joints, swept, axes, tip)
+        memory = np.empty(sweep_memory(joints))
+        sweep(self.method.rule, joints, limits, coupled, self.kind, self.goal, self.closeness, swept, axes, tip, memory)
+        return swept
 
     def _bounded(self, step: Floats) -> Floats:
         largest = float(np.abs(step).max())

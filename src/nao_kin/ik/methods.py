@@ -13,11 +13,10 @@ import pinocchio as pin
 
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import descent
+from nao_kin.ik import layout
 from nao_kin.ik.catalogue import METHODS, Method, method_named
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.loop import Budget, Update, run_reference
-from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
 from nao_kin.ik.scales import scales_of
 from nao_kin.ik.target import KINDS, Target, TargetLike
@@ -113,7 +112,7 @@ def solve(
     start = ready.neutral if q0 is None else start_of(chain, q0)
     allowed = math.inf if jump is None else _positive(jump)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
-    if trace and outcome[descent.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
+    if trace and outcome[layout.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
         outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
@@ -212,13 +211,10 @@ def _checked(problem: Problem, method: str, seed: int) -> Method:
         raise InvalidInputError("chain", expected, f"a {type(problem.chain).__name__}")
     if _integer(seed) < 0:
         raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
-    chosen, target = method_named(method), problem.target
-    if target.kind not in chosen.targets:
-        expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
-        raise InvalidInputError("target", expected, f"a {target.kind} target")
-    if chosen.orientation_error != ROTATION_VECTOR and target.weights[3:] != (1.0, 1.0, 1.0):
-        expected = f"weights of 1 for rx, ry and rz, because method {method!r} has other coordinates of the orientation"
-        raise InvalidInputError("weights", expected, str(list(target.weights)))
+    chosen = method_named(method)
+    refused = chosen.refusal(problem.chain, problem.target)
+    if refused is not None:
+        raise refused
     return chosen
 
 

@@ -7,6 +7,7 @@ import typer
 from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
+from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.startup import startup
 
@@ -23,5 +24,6 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(methods)
 bench.command()(practicum)
 bench.command()(startup)
