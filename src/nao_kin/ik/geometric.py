@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-__all__ = ["CCD", "FABRIK", "FOLLOW_THE_LEADER", "refusal", "sweep", "sweep_memory"]
+__all__ = ["CCD", "DOUBLINGS", "FABRIK", "FOLLOW_THE_LEADER", "WORTH", "refusal", "sweep", "sweep_memory"]
 
 CCD: Final = 100
 FOLLOW_THE_LEADER: Final = 101
 FABRIK: Final = 102
 
-_WORTH: Final = 0.81
+WORTH: Final = 0.81
 """A pass over points counts if it takes a tenth off the distance, so that its square falls to this part."""
 
-_DOUBLINGS: Final = 20
+DOUBLINGS: Final = 20
 """Times that a sweep's own step is doubled at most."""
 
 
@@ -90,7 +90,7 @@ def sweep(
         start[i] = q[i]
     if method != CCD:
         hinge_pass(method == FOLLOW_THE_LEADER, joints, limits, coupled, goal, q, axes, tip, rest)
-        if not squared_error(kind, goal, closeness, tip) < _WORTH * before:
+        if not squared_error(kind, goal, closeness, tip) < WORTH * before:
             for i in range(n):
                 q[i] = start[i]
             place(joints, q, axes, tip)
@@ -116,13 +116,13 @@ def _go_on(
 ) -> None:
     """Goes on in the direction from `start` to q while doubling the way brings the error down.
 
-    A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical and statistical problems, 1961.
+    A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical problems, 1961.
     """
     n, trial, factor = q.shape[0], memory[: q.shape[0]], 1.0
     best = squared_error(kind, goal, closeness, tip)
     for i in range(n):
         memory[n + i] = q[i] - start[i]
-    for _ in range(_DOUBLINGS):
+    for _ in range(DOUBLINGS):
         for i in range(n):
             trial[i] = q[i] + factor * memory[n + i]
         move_inside(trial, limits, coupled)

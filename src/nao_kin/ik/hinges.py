@@ -20,12 +20,12 @@ from nao_kin.kernels.motion import COLUMN, MULTIPLIER, place
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
 
-__all__ = ["hinge_memory", "hinge_pass", "outward_pass", "want_points"]
+__all__ = ["CYCLES", "STILL", "carry", "hinge_memory", "hinge_pass", "leave_line", "outward_pass", "want_points"]
 
-_CYCLES: Final = 20
+CYCLES: Final = 20
 """Times that the joints of one group take turns."""
 
-_STILL: Final = 1e-9
+STILL: Final = 1e-9
 """A cycle of turns that moves no joint by more than this [rad] is the last."""
 
 _BEND: Final = 0.1
@@ -67,6 +67,7 @@ def hinge_pass(
     m = joints.shape[0] - 1
     first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
     wanted, rest = memory[2 * m + 2 : 5 * m + 11].reshape(m + 3, 3), memory[5 * m + 11 :]
+    leave_line(joints, limits, coupled, goal, q, axes, tip, first, slide)
     count = want_points(joints, limits, coupled, goal, q, axes, tip, first, slide, wanted, rest)
     outward_pass(follow, 0, joints, limits, coupled, count, first, slide, wanted, q, axes, tip)
     move_inside(q, limits, coupled)
@@ -89,19 +90,37 @@ def want_points(
 ) -> int:
     """How many groups there are, and where their points are wanted: by a reach pass, or straight if out of reach.
 
-    A chain that stands in a straight line with the target is bent first. The arguments are those of `hinge_pass` and
-    `outward_pass`; `memory` is scratch (7 m,).
+    The arguments are those of `hinge_pass` and `outward_pass`, q among those kept; `memory` is scratch (6 m + n,).
     """
-    m, length = joints.shape[0] - 1, chain_length(joints)
+    m, n = joints.shape[0] - 1, q.shape[0]
+    count = find_groups(chain_length(joints), axes, tip, first, slide)
+    if count > 0 and not want_straight(goal, axes, tip, count, first, slide, wanted):
+        lines, turned = memory[: 6 * m].reshape(m, 6), memory[6 * m : 6 * m + n]
+        _reach_pass(joints, limits, coupled, goal, count, first, slide, q, axes, tip, wanted, lines, turned)
+    return count
+
+
+@leaf_jit
+def leave_line(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    goal: Floats,
+    q: Floats,
+    axes: Floats,
+    tip: Floats,
+    first: Floats,
+    slide: Floats,
+) -> None:
+    """Bends a chain that stands in a straight line with a target within reach, which no pass would have leave the line.
+
+    The arguments are those of `hinge_pass` and `outward_pass`; first and slide are written.
+    """
+    length = chain_length(joints)
     count = find_groups(length, axes, tip, first, slide)
-    if count == 0 or want_straight(goal, axes, tip, count, first, slide, wanted):
-        return count
-    if is_straight(length, goal, axes, tip, count, first, slide):
+    if count > 1 and is_straight(length, goal, axes, tip, count, first, slide):
         _bend(joints, limits, coupled, int(first[0]), q)
         place(joints, q, axes, tip)
-    lines, turned = memory[: 6 * m].reshape(m, 6), memory[6 * m : 7 * m]
-    _reach_pass(joints, limits, coupled, goal, count, first, slide, q, axes, tip, wanted, lines, turned)
-    return count
 
 
 @leaf_jit
@@ -238,14 +257,14 @@ def _turn_group(
         point: The point (3,) [m], carried along.
         end: The tip (3,) [m], carried along; or empty.
     """
-    for _ in range(_CYCLES):
+    for _ in range(CYCLES):
         largest = 0.0
         for k in range(high - 1, low - 1, -1):
             delta = _turn_joint(joints, limits, coupled, k, point, goal, q, lines)
             largest = max(largest, abs(delta))
             if delta != 0.0:
-                _carry(k, stop, delta, lines, point, end)
-        if largest <= _STILL or high - low <= 1:
+                carry(k, stop, delta, lines, point, end)
+        if largest <= STILL or high - low <= 1:
             break
 
 
@@ -266,7 +285,7 @@ def _turn_joint(
 
 
 @leaf_jit
-def _carry(k: int, stop: int, delta: float, lines: Floats, point: Floats, end: Floats) -> None:
+def carry(k: int, stop: int, delta: float, lines: Floats, point: Floats, end: Floats) -> None:
     """Turns what joint k carries about its axis by delta [rad]: the axes behind it up to `stop`, the point, the tip."""
     ax, ay, az, cx, cy, cz = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3], lines[k, 4], lines[k, 5]
     s, c = math.sin(delta), math.cos(delta)
