@@ -19,7 +19,7 @@ from nao_kin.ik.aim import POSITION
 from nao_kin.ik.ccd import squared_error
 from nao_kin.ik.geometric import DOUBLINGS, WORTH
 from nao_kin.ik.groups import group_point
-from nao_kin.ik.hinges import CYCLES, STILL, carry, leave_line, outward_pass, want_points
+from nao_kin.ik.hinges import CYCLES, STILL, carry, hinge_memory, leave_line, outward_pass, want_points
 from nao_kin.ik.turns import best_turn, point_wave
 from nao_kin.kernels.limits import column_range, move_inside
 from nao_kin.kernels.motion import COLUMN, MULTIPLIER, place
@@ -42,9 +42,9 @@ def tree_sweep(
     goals: Sequence[Floats],
     q: Floats,
 ) -> Floats:
-    """One FABRIK iteration on chains that share joints; the sum of squared distances to the targets never increases.
+    """One FABRIK iteration on chains that share joints; the sum of squared distances to the targets does not increase.
 
-    Like `nao_kin.ik.geometric.sweep`: a pass that does not bring the tips closer is taken back and the joints are moved
+    Like `nao_kin.ik.geometric.sweep`: a straight chain leaves the line of its target, a pass that does not bring the tips closer is taken back and the joints are moved
     for the tips alone, and the sweep goes on in its direction as long as that helps.
 
     Args:
@@ -59,6 +59,7 @@ def tree_sweep(
     Returns:
         The joints after the sweep (N,), inside the limits.
     """
+    q = _off_lines(paths, columns, limits, coupled, goals, q)
     before = _missing(_branches(paths, columns, goals, q))
     moved = tree_pass(paths, columns, limits, coupled, goals, q)
     best = _missing(_branches(paths, columns, goals, moved))
@@ -66,7 +67,7 @@ def tree_sweep(
         moved = _for_the_tips(_branches(paths, columns, goals, q), limits, coupled, q)
         best = _missing(_branches(paths, columns, goals, moved))
         if not best < before:
-            return q.copy()
+            return q
     way, factor = moved - q, 1.0
     for _ in range(DOUBLINGS):
         trial = moved + factor * way
@@ -142,15 +143,28 @@ def tree_pass(
 ) -> Floats:
     """The two passes of `tree_sweep`, whatever they do to the error; returns the joints (N,)."""
     q = q.copy()
-    for index in range(len(paths)):  # a chain that is bent changes the others
-        b = _branches(paths, columns, goals, q)[index]
-        leave_line(b.joints, limits, coupled, b.goal, q, b.axes, b.tip, b.first, b.slide)
     branches = _branches(paths, columns, goals, q)
     for b in branches:
         memory = np.empty(6 * len(b.axes) + len(q))
         b.count = want_points(b.joints, limits, coupled, b.goal, q, b.axes, b.tip, b.first, b.slide, b.wanted, memory)
     _outwards(branches, 0, limits, coupled, q)
     move_inside(q, limits, coupled)
+    return q
+
+
+def _off_lines(
+    paths: Sequence[Floats],
+    columns: Sequence[NDArray[np.int64]],
+    limits: Floats,
+    coupled: Floats,
+    goals: Sequence[Floats],
+    q: Floats,
+) -> Floats:
+    """A copy of the joints (N,), every chain bent that stands in a straight line with its target."""
+    q = q.copy()
+    for index in range(len(paths)):  # anew for each, because bending one moves the others
+        b = _branches(paths, columns, goals, q)[index]
+        leave_line(b.joints, limits, coupled, b.goal, q, b.axes, b.tip, np.empty(hinge_memory(b.joints)))
     return q
 
 

@@ -3,7 +3,7 @@
 CCD moves one joint at a time to its optimum. FABRIK and follow-the-leader (FTL) move points and have the hinges follow.
 Free points always come closer, hinges need not: where they stand against each other, a pass does not bring the tip
 closer, or hardly. Such a pass is taken back, and the sweep moves the joints for the tip alone, which is CCD. So no
-sweep of any method increases the error.
+sweep of any method increases the error, but for one that has a straight chain leave the line of its target.
 
 All three converge linearly, which can be slow near the target. So a sweep ends with a try in the direction in which it
 went: twice as far, four times, and so on as long as the error falls.
@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.ik.ccd import ccd_pass, squared_error
-from nao_kin.ik.hinges import hinge_memory, hinge_pass
+from nao_kin.ik.hinges import hinge_memory, hinge_pass, leave_line
 from nao_kin.kernels.compiling import leaf_jit
 from nao_kin.kernels.limits import move_inside
 from nao_kin.kernels.motion import place
@@ -85,6 +85,8 @@ def sweep(
     """
     n = q.shape[0]
     start, rest = memory[:n], memory[n:]
+    if method != CCD:
+        leave_line(joints, limits, coupled, goal, q, axes, tip, rest)
     before = squared_error(kind, goal, closeness, tip)
     for i in range(n):
         start[i] = q[i]

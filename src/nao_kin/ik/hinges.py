@@ -29,7 +29,7 @@ STILL: Final = 1e-9
 """A cycle of turns that moves no joint by more than this [rad] is the last."""
 
 _BEND: Final = 0.1
-"""By how much each joint of a straight line is bent [rad]; towards the middle of its range, or forwards."""
+"""By how much each joint of a straight line is bent at most [rad]; towards the middle of its range, or forwards."""
 
 
 def hinge_memory(joints: Floats) -> int:
@@ -67,7 +67,6 @@ def hinge_pass(
     m = joints.shape[0] - 1
     first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
     wanted, rest = memory[2 * m + 2 : 5 * m + 11].reshape(m + 3, 3), memory[5 * m + 11 :]
-    leave_line(joints, limits, coupled, goal, q, axes, tip, first, slide)
     count = want_points(joints, limits, coupled, goal, q, axes, tip, first, slide, wanted, rest)
     outward_pass(follow, 0, joints, limits, coupled, count, first, slide, wanted, q, axes, tip)
     move_inside(q, limits, coupled)
@@ -102,34 +101,31 @@ def want_points(
 
 @leaf_jit
 def leave_line(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    goal: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    first: Floats,
-    slide: Floats,
+    joints: Floats, limits: Floats, coupled: Floats, goal: Floats, q: Floats, axes: Floats, tip: Floats, memory: Floats
 ) -> None:
     """Bends a chain that stands in a straight line with a target within reach, which no pass would have leave the line.
 
-    The arguments are those of `hinge_pass` and `outward_pass`; first and slide are written.
+    That may increase the error. The arguments are those of `hinge_pass`.
     """
-    length = chain_length(joints)
+    m, length = joints.shape[0] - 1, chain_length(joints)
+    first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
     count = find_groups(length, axes, tip, first, slide)
     if count > 1 and is_straight(length, goal, axes, tip, count, first, slide):
-        _bend(joints, limits, coupled, int(first[0]), q)
+        missing = 0.0
+        for i in range(3):
+            missing += (goal[i, 3] - tip[9 + i]) ** 2
+        # A line of length l bent by an angle a is shorter by about l a².
+        _bend(min(_BEND, math.sqrt(math.sqrt(missing) / length)), joints, limits, coupled, int(first[0]), q)
         place(joints, q, axes, tip)
 
 
 @leaf_jit
-def _bend(joints: Floats, limits: Floats, coupled: Floats, end: int, q: Floats) -> None:
+def _bend(angle: float, joints: Floats, limits: Floats, coupled: Floats, end: int, q: Floats) -> None:
     """Bends every joint before joint `end` by the same angle, so that the chain leaves a line in a way of its own."""
     for k in range(end):
         i = int(joints[k, COLUMN])
         middle = 0.5 * (limits[0, i] + limits[1, i])
-        q[i] += -_BEND if q[i] > middle else _BEND
+        q[i] += -angle if q[i] > middle else angle
     move_inside(q, limits, coupled)
 
 
