@@ -3,7 +3,7 @@
 CCD moves one joint at a time to its optimum. FABRIK and follow-the-leader (FTL) move points and have the hinges follow.
 Free points always come closer, hinges need not: where they stand against each other, a pass does not bring the tip
 closer, or hardly. Such a pass is taken back, and the sweep moves the joints for the tip alone, which is CCD. So no
-sweep of any method increases the error.
+sweep of any method increases the error, but for one that has a straight chain leave the line of its target.
 
 All three converge linearly, which can be slow near the target. So a sweep ends with a try in the direction in which it
 went: twice as far, four times, and so on as long as the error falls.
@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.ik.ccd import ccd_pass, squared_error
-from nao_kin.ik.hinges import hinge_memory, hinge_pass
+from nao_kin.ik.hinges import hinge_memory, hinge_pass, leave_line
 from nao_kin.kernels.compiling import leaf_jit
 from nao_kin.kernels.limits import move_inside
 from nao_kin.kernels.motion import place
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-__all__ = ["CCD", "FABRIK", "FOLLOW_THE_LEADER", "refusal", "sweep", "sweep_memory"]
+__all__ = ["CCD", "DOUBLINGS", "FABRIK", "FOLLOW_THE_LEADER", "WORTH", "refusal", "sweep", "sweep_memory"]
 
 CCD: Final = 100
 FOLLOW_THE_LEADER: Final = 101
 FABRIK: Final = 102
 
-_WORTH: Final = 0.81
+WORTH: Final = 0.81
 """A pass over points counts if it takes a tenth off the distance, so that its square falls to this part."""
 
-_DOUBLINGS: Final = 20
+DOUBLINGS: Final = 20
 """Times that a sweep's own step is doubled at most."""
 
 
@@ -85,12 +85,14 @@ def sweep(
     """
     n = q.shape[0]
     start, rest = memory[:n], memory[n:]
+    if method != CCD:
+        leave_line(joints, limits, coupled, goal, q, axes, tip, rest)
     before = squared_error(kind, goal, closeness, tip)
     for i in range(n):
         start[i] = q[i]
     if method != CCD:
         hinge_pass(method == FOLLOW_THE_LEADER, joints, limits, coupled, goal, q, axes, tip, rest)
-        if not squared_error(kind, goal, closeness, tip) < _WORTH * before:
+        if not squared_error(kind, goal, closeness, tip) < WORTH * before:
             for i in range(n):
                 q[i] = start[i]
             place(joints, q, axes, tip)
@@ -116,13 +118,13 @@ def _go_on(
 ) -> None:
     """Goes on in the direction from `start` to q while doubling the way brings the error down.
 
-    A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical and statistical problems, 1961.
+    A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical problems, 1961.
     """
     n, trial, factor = q.shape[0], memory[: q.shape[0]], 1.0
     best = squared_error(kind, goal, closeness, tip)
     for i in range(n):
         memory[n + i] = q[i] - start[i]
-    for _ in range(_DOUBLINGS):
+    for _ in range(DOUBLINGS):
         for i in range(n):
             trial[i] = q[i] + factor * memory[n + i]
         move_inside(trial, limits, coupled)

@@ -20,16 +20,16 @@ from nao_kin.kernels.motion import COLUMN, MULTIPLIER, place
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
 
-__all__ = ["hinge_memory", "hinge_pass", "outward_pass", "want_points"]
+__all__ = ["CYCLES", "STILL", "carry", "hinge_memory", "hinge_pass", "leave_line", "outward_pass", "want_points"]
 
-_CYCLES: Final = 20
+CYCLES: Final = 20
 """Times that the joints of one group take turns."""
 
-_STILL: Final = 1e-9
+STILL: Final = 1e-9
 """A cycle of turns that moves no joint by more than this [rad] is the last."""
 
 _BEND: Final = 0.1
-"""By how much each joint of a straight line is bent [rad]; towards the middle of its range, or forwards."""
+"""By how much each joint of a straight line is bent at most [rad]; towards the middle of its range, or forwards."""
 
 
 def hinge_memory(joints: Floats) -> int:
@@ -89,28 +89,43 @@ def want_points(
 ) -> int:
     """How many groups there are, and where their points are wanted: by a reach pass, or straight if out of reach.
 
-    A chain that stands in a straight line with the target is bent first. The arguments are those of `hinge_pass` and
-    `outward_pass`; `memory` is scratch (7 m,).
+    The arguments are those of `hinge_pass` and `outward_pass`, q among those kept; `memory` is scratch (6 m + n,).
     """
-    m, length = joints.shape[0] - 1, chain_length(joints)
-    count = find_groups(length, axes, tip, first, slide)
-    if count == 0 or want_straight(goal, axes, tip, count, first, slide, wanted):
-        return count
-    if is_straight(length, goal, axes, tip, count, first, slide):
-        _bend(joints, limits, coupled, int(first[0]), q)
-        place(joints, q, axes, tip)
-    lines, turned = memory[: 6 * m].reshape(m, 6), memory[6 * m : 7 * m]
-    _reach_pass(joints, limits, coupled, goal, count, first, slide, q, axes, tip, wanted, lines, turned)
+    m, n = joints.shape[0] - 1, q.shape[0]
+    count = find_groups(chain_length(joints), axes, tip, first, slide)
+    if count > 0 and not want_straight(goal, axes, tip, count, first, slide, wanted):
+        lines, turned = memory[: 6 * m].reshape(m, 6), memory[6 * m : 6 * m + n]
+        _reach_pass(joints, limits, coupled, goal, count, first, slide, q, axes, tip, wanted, lines, turned)
     return count
 
 
 @leaf_jit
-def _bend(joints: Floats, limits: Floats, coupled: Floats, end: int, q: Floats) -> None:
+def leave_line(
+    joints: Floats, limits: Floats, coupled: Floats, goal: Floats, q: Floats, axes: Floats, tip: Floats, memory: Floats
+) -> None:
+    """Bends a chain that stands in a straight line with a target within reach, which no pass would have leave the line.
+
+    That may increase the error. The arguments are those of `hinge_pass`.
+    """
+    m, length = joints.shape[0] - 1, chain_length(joints)
+    first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
+    count = find_groups(length, axes, tip, first, slide)
+    if count > 1 and is_straight(length, goal, axes, tip, count, first, slide):
+        missing = 0.0
+        for i in range(3):
+            missing += (goal[i, 3] - tip[9 + i]) ** 2
+        # A line of length l bent by an angle a is shorter by about l a².
+        _bend(min(_BEND, math.sqrt(math.sqrt(missing) / length)), joints, limits, coupled, int(first[0]), q)
+        place(joints, q, axes, tip)
+
+
+@leaf_jit
+def _bend(angle: float, joints: Floats, limits: Floats, coupled: Floats, end: int, q: Floats) -> None:
     """Bends every joint before joint `end` by the same angle, so that the chain leaves a line in a way of its own."""
     for k in range(end):
         i = int(joints[k, COLUMN])
         middle = 0.5 * (limits[0, i] + limits[1, i])
-        q[i] += -_BEND if q[i] > middle else _BEND
+        q[i] += -angle if q[i] > middle else angle
     move_inside(q, limits, coupled)
 
 
@@ -238,14 +253,14 @@ def _turn_group(
         point: The point (3,) [m], carried along.
         end: The tip (3,) [m], carried along; or empty.
     """
-    for _ in range(_CYCLES):
+    for _ in range(CYCLES):
         largest = 0.0
         for k in range(high - 1, low - 1, -1):
             delta = _turn_joint(joints, limits, coupled, k, point, goal, q, lines)
             largest = max(largest, abs(delta))
             if delta != 0.0:
-                _carry(k, stop, delta, lines, point, end)
-        if largest <= _STILL or high - low <= 1:
+                carry(k, stop, delta, lines, point, end)
+        if largest <= STILL or high - low <= 1:
             break
 
 
@@ -266,7 +281,7 @@ def _turn_joint(
 
 
 @leaf_jit
-def _carry(k: int, stop: int, delta: float, lines: Floats, point: Floats, end: Floats) -> None:
+def carry(k: int, stop: int, delta: float, lines: Floats, point: Floats, end: Floats) -> None:
     """Turns what joint k carries about its axis by delta [rad]: the axes behind it up to `stop`, the point, the tip."""
     ax, ay, az, cx, cy, cz = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3], lines[k, 4], lines[k, 5]
     s, c = math.sin(delta), math.cos(delta)
