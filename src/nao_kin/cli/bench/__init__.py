@@ -8,6 +8,7 @@ from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.startup import startup
+from nao_kin.cli.bench.tips import tips
 
 __all__ = ["bench"]
 
@@ -23,3 +24,4 @@ bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
 bench.command()(startup)
+bench.command()(tips)
