@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.tree import Tree as Tree
     from nao_kin.urdf_chain import UrdfChain as UrdfChain
     from nao_kin.view.export import export_html as export_html
     from nao_kin.view.export import show as show
@@ -58,6 +59,7 @@ _HOME = {
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
+    "Tree": "tree",
     "UrdfChain": "urdf_chain",
     "compare": "crosscheck",
     "document_chain": "documents.chains",

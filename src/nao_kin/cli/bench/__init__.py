@@ -10,6 +10,7 @@ from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.startup import startup
+from nao_kin.cli.bench.tips import tips
 
 __all__ = ["bench"]
 
@@ -27,3 +28,4 @@ bench.command()(edges)
 bench.command()(methods)
 bench.command()(practicum)
 bench.command()(startup)
+bench.command()(tips)
