@@ -61,6 +61,13 @@ class Update:
     parameters: tuple[float, ...]
     orientation_error: int = ROTATION_VECTOR
 
+    def proposals(self, J: Floats, e: Floats) -> Floats:
+        """The rule's proposals (1 or 2, n) for the Jacobian J (m, n) and the error e (m,), see `nao_kin.ik.rules`."""
+        m, n = J.shape
+        steps, parameters = np.empty((2, n)), np.array(self.parameters, dtype=np.float64)
+        count = update(self.rule, np.array(J, order="C"), e, parameters, np.empty((m, m)), np.empty(m), steps)
+        return steps[:count]
+
 
 @dataclass(frozen=True, slots=True)
 class Budget:
@@ -154,7 +161,6 @@ class _Search:
 
     def __post_init__(self) -> None:
         self.goal, self.weights, self.kind = self.target.goal, np.array(self.target.weights), KINDS[self.target.kind]
-        self.parameters = np.array(self.method.parameters, dtype=np.float64)
         self.bound = {"position": slice(0, 3), "orientation": slice(3, 6)}.get(self.target.kind, slice(0, 6))
 
     def descend(self, q: Floats) -> Status:
@@ -194,10 +200,8 @@ class _Search:
         J, e = full[self.bound], e[self.bound]
         uphill = J.T @ e
         held = ((q <= self.chain.lower) & (uphill < 0.0)) | ((q >= self.chain.upper) & (uphill > 0.0))
-        m, steps = len(e), np.empty((2, len(q)))
-        J = np.ascontiguousarray(np.where(held, 0.0, J))
-        proposed = update(self.method.rule, J, e, self.parameters, np.empty((m, m)), np.empty(m), steps)
-        return min(map(self._bounded, steps[:proposed]), key=lambda step: self._merit_after(q, step, proposed))
+        proposed = self.method.proposals(np.where(held, 0.0, J), e)
+        return min(map(self._bounded, proposed), key=lambda step: self._merit_after(q, step, len(proposed)))
 
     def _swept(self, q: Floats) -> Floats:
         """The joints after a sweep; sweeps work on the flat form of the chain, here as in the compiled loop."""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.loop import UpdateRule
+    from nao_kin.ik.loop import Update
 
     Mask = NDArray[np.bool_]
 
@@ -36,7 +36,7 @@ class Task:
     e: Floats
 
 
-def prioritised_step(tasks: Sequence[Task], rule: UpdateRule, at_lower: Mask, at_upper: Mask) -> Floats:
+def prioritised_step(tasks: Sequence[Task], rule: Update, at_lower: Mask, at_upper: Mask) -> Floats:
     """Δq (n,) [rad or m]: Δqₖ = Δqₖ₋₁ + rule(Jₖ Pₖ₋₁, eₖ − Jₖ Δqₖ₋₁), Pₖ₋₁ projecting on the null space of J₁ … Jₖ₋₁.
 
     The rule's steps lie in the rows of its Jacobian, so no task disturbs those before it, to first order. A joint at an
@@ -47,7 +47,7 @@ def prioritised_step(tasks: Sequence[Task], rule: UpdateRule, at_lower: Mask, at
 
     Args:
         tasks: In order of precedence.
-        rule: From `nao_kin.ik.rules`.
+        rule: One that makes a single proposal.
         at_lower: Joints at the lower ends of their ranges (n,).
         at_upper: Joints at the upper ends (n,).
     """
@@ -57,17 +57,13 @@ def prioritised_step(tasks: Sequence[Task], rule: UpdateRule, at_lower: Mask, at
     return step
 
 
-def _share(
-    task: Task, above: Sequence[Floats], step: Floats, rule: UpdateRule, at_lower: Mask, at_upper: Mask
-) -> Floats:
+def _share(task: Task, above: Sequence[Floats], step: Floats, rule: Update, at_lower: Mask, at_upper: Mask) -> Floats:
     """What a task adds to the step of those above it."""
-    rest, share = task.e - task.J @ step, np.empty_like(step)
+    rest = task.e - task.J @ step
     uphill = (task.J @ _projector(above, np.zeros_like(at_lower))).T @ rest
     held = _outward(uphill, at_lower, at_upper)
     while True:
-        J = np.ascontiguousarray(task.J @ _projector(above, held))
-        m = len(rest)
-        rule(J, rest, np.empty((m, m)), np.empty(m), share)
+        share: Floats = rule.proposals(task.J @ _projector(above, held), rest)[0]
         # Holding one joint can turn another outwards; each turn holds more of them, so this ends.
         pushed = ~held & _outward(step + share, at_lower, at_upper) & (share != 0.0)
         if not pushed.any():

@@ -9,8 +9,8 @@ import numpy as np
 
 from nao_kin.chain import configuration, neutral
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik.loop import Budget
-from nao_kin.ik.methods import METHODS
+from nao_kin.ik.catalogue import METHODS
+from nao_kin.ik.loop import Budget, Update
 from nao_kin.ik.target import Target
 from nao_kin.ik.tree_loop import run_tree
 from nao_kin.ik.tree_problem import TreeProblem, TreeResult, judge_tree
@@ -20,7 +20,6 @@ from nao_kin.tree import Tree
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from nao_kin.ik.loop import UpdateRule
     from nao_kin.ik.target import TargetLike
 
 __all__ = ["solve_tree"]
@@ -128,7 +127,7 @@ def _weights(tree: Tree, levels: Sequence[Sequence[str]], weights: Mapping[str, 
     return {tip: every[tip] / max(every[other] for other in level) for level in levels for tip in level}
 
 
-def _rule(method: str, wanted: Mapping[str, Target]) -> UpdateRule:
+def _rule(method: str, wanted: Mapping[str, Target]) -> Update:
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
     chosen = METHODS[method]
@@ -136,7 +135,7 @@ def _rule(method: str, wanted: Mapping[str, Target]) -> UpdateRule:
         if target.kind not in chosen.targets:
             expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
             raise InvalidInputError(f"target of {tip}", expected, f"a {target.kind} target")
-    return chosen.rule
+    return Update(chosen.code, chosen.tuned({}, None))
 
 
 def _seed(seed: Any) -> int:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.loop import Budget, UpdateRule
+    from nao_kin.ik.loop import Budget, Update
     from nao_kin.ik.tree_aim import Levels, Seen
     from nao_kin.ik.tree_problem import TreeProblem
     from nao_kin.tolerances import Tolerances
@@ -44,7 +44,7 @@ SLACK: Final = 1e-6
 
 
 def run_tree(
-    problem: TreeProblem, rule: UpdateRule, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool
+    problem: TreeProblem, rule: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool
 ) -> TreeRun:
     """Runs starts until every tip is at its target or the budget is spent, and returns the best joints found.
 
@@ -74,7 +74,7 @@ class _Search:
     aims: Mapping[str, Aim]
     levels: Levels
     tolerances: Tolerances
-    rule: UpdateRule
+    rule: Update
     budget: Budget
     trace: list[TraceRow] | None
     best_q: Floats = field(default_factory=lambda: np.empty(0))
