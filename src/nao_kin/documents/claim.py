@@ -76,7 +76,7 @@ class Measured:
 
 
 Check: TypeAlias = Callable[[Form], Measured]
-"""Runs any form that has the printed one's arguments. Its sampling has a fixed seed, and every other quantity is exact."""
+"""Runs any form that takes the printed one's arguments; fixed seed, every other quantity exact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,8 +114,8 @@ class Claim:
         domain: Where it was sampled, and where it is meant to hold.
         unit: Unit of the residual; ``"1"`` for a relative one or a share.
         tolerance: Largest residual that holds; for printed numbers half of their last digit.
-        conventions: Readings under which a form that fails as it stands may hold: the check with that reading, by a name
-            that completes "holds if …". The first that holds is the verdict's.
+        conventions: Readings under which a form that fails as it stands may hold: the check with that reading, by a
+            name that completes "holds if …". The first that holds is the verdict's.
         correction: What makes it hold, for a form that fails.
         uncorrectable: Why there is no correction, for a form that fails and has none.
         not_checkable: Why there is nothing to test; then `printed` is not run.
