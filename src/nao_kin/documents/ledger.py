@@ -15,6 +15,10 @@ __all__ = ["claim", "claims"]
 _MODULES: Final = (
     # 000, Bischoff 2016
     # 001, practicum
+    "practicum_check_claims",
+    "practicum_newton_claims",
+    "practicum_profile_claims",
+    "practicum_short_claims",
     # 002, hexapod article
     # 004, MATLAB example
 )
