@@ -21,6 +21,9 @@ _MODULES: Final = (
     "practicum_short_claims",
     # 002, hexapod article
     # 004, MATLAB example
+    "matlab_matrix_claims",
+    "matlab_solution_claims",
+    "matlab_chain_claims",
 )
 """Modules of this package with a tuple `CLAIMS` each, in the order of the documents."""
 
