@@ -17,6 +17,7 @@ _MODULES: Final = (
     # 001, practicum
     "practicum_check_claims",
     "practicum_newton_claims",
+    "practicum_inverse_claims",
     "practicum_profile_claims",
     "practicum_short_claims",
     # 002, hexapod article

@@ -66,7 +66,7 @@ class Case(NamedTuple):
 def position(x: float, z: float, neck: float, t1: float, t2: float) -> Floats:
     """Where a camera at (x, 0, z) behind a yaw t1 and a pitch t2 [rad] at height `neck` is (3,)."""
     R = pin.utils.rotate("z", t1) @ pin.utils.rotate("y", t2)
-    return np.add(R @ (x, 0.0, z), (0.0, 0.0, neck))
+    return np.asarray(np.add(R @ (x, 0.0, z), (0.0, 0.0, neck)))
 
 
 def cases(t2: float | None = None, xc: float | None = None, seed: int = _SEED) -> list[Case]:

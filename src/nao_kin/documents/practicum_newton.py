@@ -139,9 +139,11 @@ def eq_15(J: Floats) -> Floats:
     return J.T @ np.linalg.inv(J @ J.T)
 
 
-def eq_15_tall(J: Floats) -> Floats:
-    """J⁺ of a matrix with more rows than columns and full rank."""
-    return np.linalg.inv(J.T @ J) @ J.T
+def eq_15_any(J: Floats) -> Floats:
+    """J⁺ of any matrix, from its singular values that are not zero."""
+    U, stretch, Vt = np.linalg.svd(J, full_matrices=False)
+    kept = stretch > 1e-10 * stretch[0]
+    return Vt[kept].T @ np.diag(1.0 / stretch[kept]) @ U[:, kept].T
 
 
 def eq_16(q_n: Floats, K: float, J_pseudo: Floats, e: Floats) -> Floats:
@@ -152,3 +154,13 @@ def eq_16(q_n: Floats, K: float, J_pseudo: Floats, e: Floats) -> Floats:
 def combination(transpose: Floats, pseudo: Floats, error: Callable[[Floats], float]) -> Floats:
     """Section 1.8: of the two next iterates the one with the smaller error."""
     return transpose if error(transpose) < error(pseudo) else pseudo
+
+
+def singularities_taken() -> float:
+    """Section 1.7: the share of singular configurations that the robot can take."""
+    return 0.0
+
+
+def singularities_taken_corrected() -> float:
+    """All that are within its limits; it only cannot leave them in every direction."""
+    return 1.0
