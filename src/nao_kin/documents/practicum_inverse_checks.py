@@ -74,24 +74,26 @@ def _penrose(form: Form, J: Floats) -> float:
     try:
         P = np.asarray(form(J))
     except np.linalg.LinAlgError:
-        return float("inf")
+        P = np.zeros(J.T.shape)  # no value gives back nothing of J
     return max(
         deviation(J @ P @ J, J), deviation(P @ J @ P, P), deviation((J @ P).T, J @ P), deviation((P @ J).T, P @ J)
     )
 
 
 def shapes(form: Form) -> Measured:
-    """The same for wide, square, tall and rank-deficient matrices of numbers between −1 and 1."""
+    """The same for wide, square, tall and rank-deficient matrices, singular values between 0.5 and 2 or zero."""
     rng, off, counts = np.random.default_rng(_SEED), list[float](), list[str]()
     for name, rows, columns, rank in (("wide", 3, 6, 3), ("square", 5, 5, 5), ("tall", 6, 4, 4), ("singular", 4, 6, 3)):
-        factors = [(rng.uniform(-1, 1, (rows, rank)), rng.uniform(-1, 1, (rank, columns))) for _ in range(40)]
-        these = [_penrose(form, A @ B) for A, B in factors]
+        these = [_penrose(form, _matrix(rows, columns, rank, rng)) for _ in range(40)]
         off += these
         counts.append(f"{sum(x < 1e-9 for x in these)} of 40 {name}")
-    kind = ("3×6", "5×5", "6×4", "4×6 of rank 3")
-    return Measured.worst(
-        off, lambda i: f"a {kind[i // 40]} matrix", f"It is the pseudo-inverse for {', '.join(counts)} matrices."
-    )
+    found = f"It is the pseudo-inverse for {', '.join(counts)} matrices."
+    return Measured.worst(off, lambda i: ("3×6", "5×5", "6×4", "4×6 of rank 3")[i // 40], found)
+
+
+def _matrix(rows: int, columns: int, rank: int, rng: np.random.Generator) -> Floats:
+    U, V = (np.linalg.qr(rng.normal(size=(size, rank)))[0] for size in (rows, columns))
+    return np.asarray(U @ np.diag(rng.uniform(0.5, 2.0, rank)) @ V.T)
 
 
 def shortest_step(form: Form) -> Measured:

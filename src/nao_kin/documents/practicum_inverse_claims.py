@@ -61,8 +61,8 @@ CLAIMS: Final = (
         domain="60 configurations; share left of 1 mm over share left of 50 mm, of which at most half would be accurate"
         + _MEASURED_TOO,
         tolerance=0.5,
-        uncorrectable="The step is linear in e, so the share it leaves does not depend on the distance; (16) is what is "
-        "accurate for small distances.",
+        uncorrectable="The step is linear in e, so the share it leaves does not depend on the distance; what is accurate "
+        "for small distances is (16).",
     ),
     Claim(
         id="001:eq-15",
@@ -127,8 +127,8 @@ CLAIMS: Final = (
         printed=printed.eq_15,
         check=checks.wild_near_singularity,
         reference=_PINOCCHIO,
-        domain="50 configurations 1e-4 rad beside a singularity, |e| = 1e-3 m, rad along the weakest direction; the share "
-        "in which no joint moves by a quarter turn",
+        domain="50 configurations 1e-4 rad beside a singularity, |e| = 1e-3 m, rad along the weakest direction; the "
+        "share in which no joint moves by a quarter turn",
     ),
     Claim(
         id="001:1.8-combination",

@@ -143,7 +143,7 @@ def eq_15_any(J: Floats) -> Floats:
     """J⁺ of any matrix, from its singular values that are not zero."""
     U, stretch, Vt = np.linalg.svd(J, full_matrices=False)
     kept = stretch > 1e-10 * stretch[0]
-    return Vt[kept].T @ np.diag(1.0 / stretch[kept]) @ U[:, kept].T
+    return np.asarray(Vt[kept].T @ np.diag(1.0 / stretch[kept]) @ U[:, kept].T)
 
 
 def eq_16(q_n: Floats, K: float, J_pseudo: Floats, e: Floats) -> Floats:
