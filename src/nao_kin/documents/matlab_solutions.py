@@ -121,7 +121,8 @@ def rows_1_5(CameraX: float, xc: float) -> tuple[Pair, Pair]:
 
 def rows_4_7_8_9(CameraX: float, CameraZ: float, t2: float) -> tuple[Pair, Pair, Pair, Pair]:
     """Rows 4, 7, 8 and 9 of theta_1_sol and yc_sol."""
-    _, _, y2, _ = yc_sol(CameraX, CameraZ, 0, t2)
+    T = tan(t2 / 2)
+    y2 = (-CameraX * T**2 + 2 * CameraZ * T + CameraX) / (T**2 + 1)
     return (-pi / 2, CameraX), (pi / 2, y2), (-pi / 2, -y2), (pi / 2, -CameraX)
 
 

@@ -61,8 +61,8 @@ CLAIMS: Final = (
         domain="60 configurations; share left of 1 mm over share left of 50 mm, of which at most half would be accurate"
         + _MEASURED_TOO,
         tolerance=0.5,
-        uncorrectable="The step is linear in e, so the share it leaves does not depend on the distance; what is accurate "
-        "for small distances is (16).",
+        uncorrectable="The step is linear in e, so the share it leaves does not depend on the distance; (16) is what "
+        "is accurate for small ones.",
     ),
     Claim(
         id="001:eq-15",

@@ -22,7 +22,7 @@ _PHASES: Final = "integrals of an acceleration that is constant in each phase"
 _ANY: Final = "200 motions with a cruise, starting at any time and place, at a random time of the phase"
 
 _CLOCK: Final = "the clock starts with the motion, t_0 = 0"
-_LINE: Final = "p_1 is the end point and the clock starts with the motion, t_0 = 0"
+_LINE: Final = "p_1 is the end point and t counts from the start t_0"
 _ORIGIN: Final = "clock and position start with the motion, t_0 = 0 and p_0 = 0"
 
 
@@ -46,15 +46,20 @@ def _over(
     return check
 
 
-def _line(end: int, t_0: float | None) -> Check:
-    """(17) and (18) against the straight line between start and end; `end` says which p is taken for p_1."""
+def _line(end: int, from_start: bool) -> Check:
+    """(17) and (18) against the straight line between start and end.
+
+    Args:
+        end: Which p is taken for p_1.
+        from_start: Whether t counts from the start of the motion, otherwise from that of the clock.
+    """
 
     def apart(form: Form, m: Motion, t: float) -> float:
         share = (t - m.t[0]) / (m.t[3] - m.t[0])
         on_line = (1.0 - share) * m.p[0] + share * m.p[3]
-        return float(form(t, m.p[0], m.p[end], m.t[0], m.t[3])) - on_line
+        return float(form(t - m.t[0] if from_start else t, m.p[0], m.p[end], m.t[0], m.t[3])) - on_line
 
-    return _over(apart, t_0=t_0)
+    return _over(apart)
 
 
 def _place(m: Motion) -> Callable[[float], float]:
@@ -93,10 +98,10 @@ _LINES: Final = (
         "p(t) = p_0 + t (p_1 − p_0)/(t_n − t_0)",
         r"p(t) = p_0 + t \cdot \frac{p_1 - p_0}{t_n - t_0}",
         printed.eq_17,
-        _line(end=1, t_0=None),
+        _line(end=1, from_start=False),
         "m",
-        conventions={_LINE: _line(end=3, t_0=0.0)},
-        domain="200 lines; as it stands with p_1 and t_0 of the phases that the same section defines",
+        conventions={_LINE: _line(end=3, from_start=True)},
+        domain="200 lines; as it stands with the p_1 and t that the same section defines for its phases",
     ),
     _claim(
         "18",
@@ -104,10 +109,10 @@ _LINES: Final = (
         "p(t) = p_0 + v t,  v = (p_1 − p_0)/(t_n − t_0)",
         r"p(t) = p_0 + v \cdot t,\quad v = \frac{p_1 - p_0}{t_n - t_0}",
         printed.eq_18,
-        _line(end=1, t_0=None),
+        _line(end=1, from_start=False),
         "m",
-        conventions={_LINE: _line(end=3, t_0=0.0)},
-        domain="200 lines; as it stands with p_1 and t_0 of the phases that the same section defines",
+        conventions={_LINE: _line(end=3, from_start=True)},
+        domain="200 lines; as it stands with the p_1 and t that the same section defines for its phases",
     ),
 )
 

@@ -77,6 +77,7 @@ def _ends(drawn: list[Short], ends: list[float]) -> Measured:
 def _condition(form: Form) -> Measured:
     """Whether the sign of (33) tells motions that are too short from those that are not."""
     wrong = [bool(form(m.p[1], m.p[2], m.peak)) for m in motions(_COUNT, _SEED)]
+    wrong += [bool(form(0.0, 1e-9, 1.0)), not form(1e-9, 0.0, 1.0)]
     for m, allowed, _ in short_motions(_COUNT, _SEED):
         p_1, p_2 = allowed**2 / (2.0 * m.a_0), m.p[3] - allowed**2 / (-2.0 * m.a_n)
         wrong.append(not form(p_1, p_2, allowed))
@@ -166,7 +167,7 @@ CLAIMS: Final = (
         printed=printed.cruise_is_negative,
         check=_condition,
         reference="whether the motion reaches v_max",
-        domain="200 motions with a cruise and 200 too short for one; the share that is told wrongly",
+        domain="200 motions with a cruise, 200 too short for one, 1 nm to either side; the share told wrongly",
     ),
     Claim(
         id="001:2.2-short-distance",
