@@ -23,7 +23,7 @@ def as_text(found: Ledger) -> str:
     """The sheet; a single claim is shown whole, of many those that hold are only named."""
     if len(found) == 1:
         return "\n".join(_whole(found.judgements[0]))
-    lines = [found.summary]
+    lines = _wrapped(found.summary)
     for number, judgements in _by_document(found):
         heading = f"{number}  {DOCUMENTS[number]}"
         lines += ["", heading, "=" * len(heading)]

@@ -8,6 +8,7 @@ from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
+from nao_kin.cli.bench.mutants import mutants
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
@@ -26,6 +27,7 @@ bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
 bench.command()(methods)
+bench.command()(mutants)
 bench.command()(practicum)
 bench.command()(startup)
 bench.command()(tips)
