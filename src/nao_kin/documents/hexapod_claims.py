@@ -55,8 +55,7 @@ def _order(form: Form) -> Measured:
     hips = walker()[0]
     for turn in _turns():
         parts = [
-            rotation(angle).rotation
-            for rotation, angle in zip((rotation_x, rotation_y, rotation_z), turn, strict=True)
+            rotation(angle).rotation for rotation, angle in zip((rotation_x, rotation_y, rotation_z), turn, strict=True)
         ]
         R = form(*parts)
         errors.append(deviation(R[:, :2], forms.rotation_matrix(*turn)[:, :2]))
@@ -64,7 +63,9 @@ def _order(form: Form) -> Measured:
             if order != (2, 0, 1):
                 other = parts[order[0]] @ parts[order[1]] @ parts[order[2]]
                 others.append(float(np.linalg.norm(hips @ (other - R).T, axis=1).max()))
-    found = f"Any of the five other orders puts a hip servo elsewhere by up to {max(others):.0f} mm, at turns up to 1 rad."
+    found = (
+        f"Any of the five other orders puts a hip servo elsewhere by up to {max(others):.0f} mm, at turns up to 1 rad."
+    )
     return Measured.worst(errors, found=found)
 
 
@@ -159,7 +160,9 @@ def _struck(form: Form) -> Measured:
             said = form(leg.angles[2], leg.at_thigh, leg.angles[1], leg.below)
             errors += [min(abs(angle - joint) for joint in joints) for angle in said]
             errors += [min(abs(angle - joint) for angle in said) for joint in joints]
-    return Measured.worst(errors, found="a1 is the knee's angle and a3 the thigh's; a leg's third joint is the hip's α.")
+    return Measured.worst(
+        errors, found="a1 is the knee's angle and a3 the thigh's; a leg's third joint is the hip's α."
+    )
 
 
 def _count(form: Form) -> Measured:
@@ -314,8 +317,9 @@ CLAIMS: Final = (
         domain=f"{_POSES}; holds for feet below the body's plane, since the arc cosine has no sign",
         unit="rad",
         conventions={
-            "h runs from the hip servo to the thigh servo, not to the end effector as the struck sentence says":
-            _leg_by_leg(_h_to_thigh, lambda leg, stance, k: leg.below)
+            "h runs from the hip servo to the thigh servo, not to the end effector as the struck sentence says": _leg_by_leg(
+                _h_to_thigh, lambda leg, stance, k: leg.below
+            )
         },
     ),
     Claim(

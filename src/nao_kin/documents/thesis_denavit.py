@@ -294,9 +294,7 @@ CLAIMS: Final = (
         check=_function((0.0, 0.0, 0.0, 0.0)),
         reference="forward kinematics link by link (Pinocchio)",
         domain="50 chains of 1 to 5 random links",
-        conventions={
-            f"{_HOMOGENEOUS}, and θ_0 is idle: n matrices turn by θ_1 … θ_n": _function((0.0, 0.0, 0.0, 1.0))
-        },
+        conventions={f"{_HOMOGENEOUS}, and θ_0 is idle: n matrices turn by θ_1 … θ_n": _function((0.0, 0.0, 0.0, 1.0))},
     ),
     Claim(
         id="000:2.2.2-dh-rules",

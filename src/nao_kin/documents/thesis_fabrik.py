@@ -113,7 +113,9 @@ def _index_range(form: Form) -> Measured:
     for n in range(2, 12):
         found, wanted = form(n), [(i + 1, i) for i in range(1, n)]
         errors.append(float(len(set(found) ^ set(wanted))))
-    return Measured.worst(errors, lambda k: f"n = {k + 2}: d_{k + 2} = |p_{k + 3} − p_{k + 2}|, and there is no p_{k + 3}")
+    return Measured.worst(
+        errors, lambda k: f"n = {k + 2}: d_{k + 2} = |p_{k + 3} − p_{k + 2}|, and there is no p_{k + 3}"
+    )
 
 
 def _stretched(form: Form) -> Measured:

@@ -207,7 +207,12 @@ def _right_after_elbow(
 
 
 def _candidates(
-    A: Floats, t_4: float, rolls: Pair, elbows: Iterable[Any], pitches: tuple[Any, Any, Any], lengths: tuple[float, float]
+    A: Floats,
+    t_4: float,
+    rolls: Pair,
+    elbows: Iterable[Any],
+    pitches: tuple[Any, Any, Any],
+    lengths: tuple[float, float],
 ) -> Floats:
     generic, quarter, straight = pitches
     rows, T_end = [], _homogeneous(np.eye(3), np.array([lengths[1], 0.0, 0.0]))

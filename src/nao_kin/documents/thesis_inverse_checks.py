@@ -153,7 +153,7 @@ def pipeline(side: Side) -> Check:
         forward = {"described arm": arm.pose, "robot's arm": lambda q: robot_arm(side).pose(q).homogeneous}
         worst = list[float]()
         for name, poses in targets.items():
-            best = [_best(form, arm, T, forward[name]) for T in poses]
+            best = [best_candidate(form, arm, T, forward[name]) for T in poses]
             solved = sum(far <= 1e-6 and turned <= 1e-6 for far, turned in best)
             far, turned = (np.array([b[k] for b in best]) for k in (0, 1))
             lines.append(
@@ -167,7 +167,9 @@ def pipeline(side: Side) -> Check:
     return check
 
 
-def _best(form: Form, arm: DescribedArm, T: Floats, forward: Callable[[Floats], Floats]) -> tuple[float, float]:
+def best_candidate(
+    form: Form, arm: DescribedArm, T: Floats, forward: Callable[[Floats], Floats]
+) -> tuple[float, float]:
     """Position [m] and rotation [rad] error of the candidate closest to a target; without any, those of the zero pose."""
     A = T.copy()
     A[:3, 3] *= _MM

@@ -123,7 +123,9 @@ _JOINTS: Final = ("LShoulderPitch", "LElbowYaw", "LWristYaw")
 def _dimensions(form: Form) -> Measured:
     said, wanted = form(), _dimensions_mm()
     names = list(wanted)
-    return Measured.worst((said[name] - wanted[name] for name in names), lambda k: f"{names[k]} is {wanted[names[k]]:.2f} mm")
+    return Measured.worst(
+        (said[name] - wanted[name] for name in names), lambda k: f"{names[k]} is {wanted[names[k]]:.2f} mm"
+    )
 
 
 def _axes(form: Form) -> Measured:
