@@ -21,6 +21,8 @@ _LABEL: Final = 12
 
 def as_text(found: Ledger) -> str:
     """The sheet; a single claim is shown whole, of many those that hold are only named."""
+    if not len(found):
+        return "Nothing fails as printed."
     if len(found) == 1:
         return "\n".join(_whole(found.judgements[0]))
     lines = _wrapped(found.summary)

@@ -135,7 +135,7 @@ CLAIMS: Final = (
         place="section 1.8, text",
         said="Taking the better of transpose and pseudo-inverse needs fewer steps and suppresses instabilities.",
         formula="q_{n+1} = the one of q_n + K Jᵀ e and q_n + J⁺ e with the smaller |e(q)|",
-        latex=r"q_{n+1} = \underset{q \in \{q_n + K J^T e,\; q_n + J^+ e\}}{\arg\min} |e(q)|",
+        latex=r"q_{n+1} = \underset{q \in \{q_n + K J^T e,\; q_n + J^+ e\}}{\operatorname{argmin}} |e(q)|",
         printed=printed.combination,
         check=checks.combined(pose=True),
         reference=_PINOCCHIO + ", whole runs beside the pseudo-inverse alone",
