@@ -77,7 +77,8 @@ def stated_order(about_x: Floats, about_y: Floats, about_z: Floats) -> Floats:
 
 def virtual_plane(points: Floats, delta: float) -> Floats:
     """Step 3: the plane of hip servos shifted in Z, before it is turned."""
-    return points + np.array([0.0, 0.0, 1.0]) * delta
+    shifted: Floats = points + np.array([0.0, 0.0, 1.0]) * delta
+    return shifted
 
 
 def hip_angle(hip: Floats, virtual_hip: Floats, foot: Floats, along: Floats) -> Any:
@@ -96,7 +97,8 @@ def hip_angle_corrected(hip: Floats, virtual_hip: Floats, foot: Floats, along: F
 
 def thigh_point(hip: Floats, psi: float, length: float) -> Floats:
     """Step 4: the thigh servo in the unturned body, seen from above; ψ from the X axis."""
-    return hip + np.array([length * cos(psi), length * sin(psi), 0.0])
+    thigh: Floats = hip + np.array([length * cos(psi), length * sin(psi), 0.0])
+    return thigh
 
 
 def a1(thigh: float, shin: float, g: float) -> Any:
@@ -129,7 +131,7 @@ def joint_angles(angle_1: float, angle_2: float, angle_3: float, angle_4: float)
     return angle_1, angle_2, angle_3, angle_4
 
 
-def joint_angles_corrected(angle_1: float, angle_2: float, angle_3: float, angle_4: float) -> tuple[float, ...]:
+def joint_angles_corrected(angle_1: float, _angle_2: float, angle_3: float, _angle_4: float) -> tuple[float, ...]:
     """The knee's and the thigh's; a2 and a4 only help to find a3."""
     return angle_1, angle_3
 
@@ -174,5 +176,6 @@ def _legs(M: Floats, hips: Floats, lengths: tuple[float, float, float], moved: F
         psi = side * hip_angle(real[k], virtual[k], foot, real[2] - real[0])
         thigh_servo = M @ thigh_point(hips[k], psi, hip) + moved
         g, h = foot - thigh_servo, thigh_servo - real[k]
-        rows.append((psi, a3(a2(thigh, shin, norm(g)), a4(h, g)), a1(thigh, shin, norm(g))))
+        distance = float(norm(g))
+        rows.append((psi, a3(a2(thigh, shin, distance), a4(h, g)), a1(thigh, shin, distance)))
     return np.array(rows)

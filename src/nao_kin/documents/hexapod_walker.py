@@ -2,7 +2,8 @@
 
 The article prints no dimensions. Lengths are in mm, as it has them; the body's frame has its origin midway between the
 two middle hip servos, x forward, y to the left, z along the hip axes. A leg's angles are those the article computes:
-the hip's turn ψ from the forward direction about z, the thigh's rise ε above the body's plane, the knee's inner angle κ.
+the hip's turn ψ from the forward direction about z, the thigh's rise ε above the body's plane, the knee's inner
+angle κ.
 """
 
 from __future__ import annotations

@@ -20,6 +20,16 @@ __all__ = ["Ledger", "claim_names", "claims", "ledger"]
 
 _MODULES: Final = (
     # 000, Bischoff 2016
+    "thesis_transforms",
+    "thesis_denavit",
+    "thesis_tables",
+    "thesis_chains",
+    "thesis_jacobian_claims",
+    "thesis_inverse_left",
+    "thesis_inverse_right",
+    "thesis_fabrik_claims",
+    "thesis_fabrik_arm",
+    "thesis_comparison_claims",
     # 001, practicum
     "practicum_check_claims",
     "practicum_newton_claims",
@@ -27,6 +37,7 @@ _MODULES: Final = (
     "practicum_profile_claims",
     "practicum_short_claims",
     # 002, hexapod article
+    "hexapod_claims",
     # 004, MATLAB example
     "matlab_matrix_claims",
     "matlab_solution_claims",

@@ -1,4 +1,4 @@
-"""What the formulas of Bischoff 2016 are held against: the robot's arms, and the arm that sections 3.1 and 3.3 describe.
+"""What Bischoff 2016 is held against: the robot's arms, and the arm that sections 3.1 and 3.3 describe.
 
 The thesis moves ElbowOffsetY from the elbow to the shoulder (T_Basis) and leaves HandOffsetZ out (T_End). Formulas of
 section 3.3 are about that *described arm*; here it is the robot's own model with those two lengths moved, so that each

@@ -8,7 +8,6 @@ from math import pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import pinocchio as pin
 
 from nao_kin.dh_row import DHRow, dh_matrix
 from nao_kin.documents.claim import Claim, Correction, Measured
@@ -75,7 +74,7 @@ def t_base_right_corrected(shoulder_y: float, elbow_y: float, shoulder_z: float)
     return t_base_right(shoulder_y, 0.0 * elbow_y, shoulder_z)
 
 
-def t_end(hand_x: float, hand_z: float, lower_arm: float) -> Floats:
+def t_end(hand_x: float, _hand_z: float, lower_arm: float) -> Floats:
     """T_End, of both arms; HandOffsetZ does not occur in it."""
     d_x = hand_x + lower_arm
     return np.array([[1, 0, 0, d_x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
@@ -195,7 +194,7 @@ def _end_check(form: Form) -> Measured:
 def _exact_parts(side: Side, q: Floats, factors: int) -> tuple[Floats, list[Floats], Floats]:
     """T_Basis, the joints' matrices and T_End that make the robot's arm: Tables 3 and 4 with ElbowOffsetY in row 3."""
     is_ = _lengths()
-    theta, s = _AGAINST * q, 1.0 if side == "left" else -1.0
+    theta, s = (_AGAINST * q).tolist(), 1.0 if side == "left" else -1.0
     rows = list(table_3(theta, 0.105) if side == "left" else table_4(theta, 0.105))
     rows[2] = (-is_["elbow_y"], rows[2][1], s * described_arm(side).l3, rows[2][3])
     A = [_modified(*row) for row in rows] + [np.eye(4)] * (factors - 4)

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.documents.claim import Claim, Correction, Measured
+from nao_kin.documents.claim import Measured
 from nao_kin.documents.sampling import derivative, relative
 from nao_kin.documents.thesis_arms import arm_configurations, described_arm, nao, robot_arm
 from nao_kin.documents.thesis_inverse import left_pipeline_corrected
 from nao_kin.documents.thesis_inverse_checks import best_candidate
-from nao_kin.documents.thesis_jacobian import eq_3_2_2_1
 from nao_kin.documents.thesis_methods import JACOBIAN, TARGETS, far, near
 from nao_kin.ik.catalogue import METHODS
 from nao_kin.ik.loop import Budget
@@ -88,7 +87,7 @@ def _refused(method: str, robot: str, chain: str, kind: str) -> bool:
     return METHODS[method].refusal(path, target) is not None
 
 
-def fixed_base(T_torso_hand: Floats, T_base_torso: Floats) -> Floats | None:
+def fixed_base(_T_base_hand: Floats, _T_base_torso: Floats) -> Floats | None:
     """Section 4.1: with another base than the torso there is no closed form."""
     return None
 
@@ -110,11 +109,13 @@ def _told(records: dict[str, Record], what: Callable[[Record], str]) -> str:
 
 
 def direct(form: Form) -> Measured:
+    """By how many iterations the closed form is not below every other method."""
     least = min(record.iterations for record in near().values())
     return Measured.worst([max(0.0, form() + 1.0 - least)], found=f"Iterative methods take {least:.0f} or more.")
 
 
 def fewest(form: Form) -> Measured:
+    """How many methods take fewer iterations than the one named."""
     records = near()
     before = [name for name, record in records.items() if record.iterations < records[form()].iterations]
     return Measured(float(len(before)), TARGETS, ", ".join(before), _told(records, lambda r: f"{r.iterations:.0f}"))
@@ -137,6 +138,7 @@ def more_iterations(form: Form) -> Measured:
 
 
 def moves_least(form: Form) -> Measured:
+    """By which part the joints move farther than with the method that moves them least."""
     records = far()
     least = min(record.moved for record in records.values())
     moved = records[form()].moved
@@ -158,6 +160,7 @@ def ahead(form: Form) -> Measured:
 
 
 def ahead_of_fabrik_corrected() -> tuple[str, ...]:
+    """On these targets."""
     return ("pinv", "newton", "dls", "sdls", "tsvd", "lm")
 
 
@@ -208,6 +211,8 @@ _CHAINS: Final = (
 
 
 def refusals(kinds: tuple[str, ...]) -> Check:
+    """A check of the share of chains and kinds of target refused."""
+
     def check(form: Form) -> Measured:
         cases = [(robot, chain, kind) for robot, chain in _CHAINS for kind in kinds]
         refused = [case for case in cases if form(*case)]

@@ -93,7 +93,7 @@ def dh_parameters(T_0: Floats, T_1: Floats) -> tuple[float, float, float, float]
 
 
 def _parameters(rng: np.random.Generator) -> tuple[float, float, float, float]:
-    """a ≥ 0, α, d, θ; lengths within 1, so that every term counts."""
+    """Random a ≥ 0, α, d, θ; lengths within 1, so that every term counts."""
     a, d = rng.uniform(0.05, 1.0), rng.uniform(-1.0, 1.0)
     return a, rng.uniform(0.1, 3.0) * rng.choice([-1.0, 1.0]), d, rng.uniform(-3.0, 3.0)
 
@@ -121,6 +121,10 @@ def _link(wanted: Callable[[Floats], Floats]) -> Check:
         return Measured.worst(deviation(form(*row), wanted(_by_pinocchio(*row))) for row in rows)
 
     return check
+
+
+def _inverted(T: Floats) -> Floats:
+    return np.asarray(np.linalg.inv(T), dtype=np.float64)
 
 
 def _product(form: Form) -> Measured:
@@ -154,12 +158,17 @@ def _function(o: tuple[float, ...]) -> Check:
             rows, thetas = [_parameters(rng) for _ in range(n)], rng.uniform(-3.0, 3.0, n + 1)
             T = pin.SE3.Identity()
             for row, theta in zip(rows, thetas[1:], strict=True):
-                T = T * pin.SE3(_by_pinocchio(*row[:3], theta))
-            p = form(thetas, lambda i, theta, rows=rows: _by_pinocchio(*rows[i - 1][:3], theta), np.array(o))
+                T = T * pin.SE3(_by_pinocchio(row[0], row[1], row[2], theta))
+            p = form(thetas, _turning(rows), np.array(o))
             errors.append(deviation(p[:3], T.translation))
         return Measured.worst(errors)
 
     return check
+
+
+def _turning(rows: Sequence[tuple[float, float, float, float]]) -> Callable[[int, float], Floats]:
+    """A_{i−1}^i as a function of i and its angle."""
+    return lambda i, theta: _by_pinocchio(*rows[i - 1][:3], theta)
 
 
 def _definitions(form: Form) -> Measured:
@@ -257,7 +266,7 @@ CLAIMS: Final = (
         latex=r"(A_{n-1}^n)^{-1} = \begin{pmatrix} c & s & 0 & -a_n \\ -c_\alpha s & c_\alpha c & s_\alpha"
         r" & -d_n s_\alpha \\ s_\alpha s & -s_\alpha c & c_\alpha & -d_n c_\alpha \\ 0&0&0&1 \end{pmatrix}",
         printed=eq_2_2_2_7,
-        check=_link(np.linalg.inv),
+        check=_link(_inverted),
         reference="Gauss elimination (LAPACK) of the motions composed by Pinocchio",
         domain=_LINKS,
     ),

@@ -74,7 +74,7 @@ def _on_the_arm(form: Form) -> Measured:
 def _back_again(form: Form) -> Measured:
     """Positions of elbow and hand by forward kinematics at the angles found."""
     arm, chain = described_arm("left"), robot_arm("left")
-    errors, inside = list[float](), 0
+    errors, inside, previous = list[float](), 0, np.zeros(4)
     for k, q in enumerate(arm_configurations("left", 2 * _COUNT, _SEED)):
         p = _points(q)
         if k % 2:  # what the algorithm returns for this hand, from the posture before
@@ -101,7 +101,7 @@ def _patient(p: Floats, t: Floats, tol: float) -> tuple[Floats, int]:
     return fabrik_points(p, t, tol, 100_000)  # an arm that ends up nearly straight takes thousands of rounds
 
 
-def _without_division(p: Floats, d: Floats, t: Floats) -> Floats:
+def _without_division(p: Floats, _d: Floats, t: Floats) -> Floats:
     return fabrik_points(p, t, _TOLERANCE)[0]
 
 

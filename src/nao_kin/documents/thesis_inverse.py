@@ -42,8 +42,8 @@ def s_definition(t: Floats, shoulder: Floats) -> Floats:
     return t - shoulder
 
 
-def s_definition_corrected(t: Floats, shoulder: Floats) -> Floats:
-    """s is the position of the shoulder, (0, ±l_1, l_2)."""
+def s_definition_corrected(_t: Floats, shoulder: Floats) -> Floats:
+    """The position of the shoulder, (0, ±l_1, l_2)."""
     return shoulder
 
 

@@ -42,7 +42,8 @@ def robot_counts(q: Floats) -> Floats:
 
 def table_counts(q: Floats) -> Floats:
     """θ as Tables 3 and 4 count: θ_3 against the robot's ElbowYaw."""
-    return q * np.array([1.0, 1.0, -1.0, 1.0])
+    theta: Floats = q * np.array([1.0, 1.0, -1.0, 1.0])
+    return theta
 
 
 def gives(
@@ -170,7 +171,7 @@ def pipeline(side: Side) -> Check:
 def best_candidate(
     form: Form, arm: DescribedArm, T: Floats, forward: Callable[[Floats], Floats]
 ) -> tuple[float, float]:
-    """Position [m] and rotation [rad] error of the candidate closest to a target; without any, those of the zero pose."""
+    """Position [m] and rotation [rad] error of the candidate closest to a target; without any, of the zero posture."""
     A = T.copy()
     A[:3, 3] *= _MM
     candidates = form(A, _MM * arm.shoulder, _MM * arm.l1, _MM * arm.l3, _MM * arm.l4)

@@ -35,7 +35,7 @@ _CLEAR: Final = 0.05
 _LIMITS: Final = "200 postures inside the limits"
 
 
-def elbow_roll(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> float:
+def elbow_roll(form: Form, arm: DescribedArm, A: Floats, _theta: Floats) -> float:
     """Calls (3.3.0.2) or (3.3.0.10), s being the shoulder."""
     return float(form(A, _MM * arm.shoulder, _MM * arm.l3, _MM * arm.l4))
 
@@ -45,17 +45,17 @@ def _shoulder_roll(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> t
     return first, second
 
 
-def _elbow_yaw(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> float:
+def _elbow_yaw(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> float:
     return float(form(A, theta[1]))
 
 
-def shoulder_pitch(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
+def shoulder_pitch(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
     """Calls (3.3.0.6), (3.3.0.7) and their like."""
     first, second = form(A, theta[1], theta[2])
     return first, second
 
 
-def upper_arm_pitch(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
+def upper_arm_pitch(form: Form, arm: DescribedArm, A: Floats, _theta: Floats) -> tuple[float, float]:
     """Calls (3.3.0.8) or (3.3.0.16)."""
     first, second = form(A, translation(_MM * arm.l4, 0.0, 0.0).homogeneous, _MM * arm.l3)
     return first, second
@@ -78,7 +78,7 @@ def clear_of_quarter(q: Floats) -> bool:
 
 def rolled(q: Floats) -> bool:
     """θ_2 not 0."""
-    return abs(q[0]) > _CLEAR and abs(q[1]) > _CLEAR
+    return bool(abs(q[0]) > _CLEAR and abs(q[1]) > _CLEAR)
 
 
 def at_quarter(q: Floats) -> Floats:

@@ -44,7 +44,7 @@ def _with_last_turn(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> 
     return _shoulder_roll(form, arm, A @ _TURNED, theta)
 
 
-def _elbow_yaw(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> float:
+def _elbow_yaw(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> float:
     return float(form(A, theta[1]))
 
 

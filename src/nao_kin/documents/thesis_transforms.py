@@ -62,7 +62,8 @@ def eq_2_2_1_5(R: Floats, d: Floats) -> Floats:
 
 def turned_about_d(R: Floats, d: Floats, p: Floats) -> Floats:
     """The text after (2.2.1.5): H turns about the place that d shows."""
-    return eq_2_2_1_5(R, d)[:3] @ np.array([*p, 1])
+    turned: Floats = eq_2_2_1_5(R, d)[:3] @ np.array([*p, 1])
+    return turned
 
 
 def worked_example() -> tuple[Floats, Floats]:
@@ -121,7 +122,7 @@ def _successive_turns(form: Form) -> Measured:
             _turn(_AXES[axis], angle)
             for axis, angle in zip(rng.integers(0, 3, 4), rng.uniform(-3.0, 3.0, 4), strict=True)
         ]
-        p, turned = rng.uniform(-1.0, 1.0, 3), None
+        p = rng.uniform(-1.0, 1.0, 3)
         turned = p
         for R in rotations:
             turned = pin.Quaternion(R) * turned
