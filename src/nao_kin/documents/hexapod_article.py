@@ -10,7 +10,7 @@ from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy import arccos, arctan2, cross
+from numpy import arccos, arctan2, cross, dot
 from numpy.linalg import norm
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def hip_angle(hip: Floats, virtual_hip: Floats, foot: Floats, along: Floats) -> 
     """Step 3: angle of the normals of plane 1 (hip, virtual hip, foot) and plane 2 (along the body, up)."""
     up = virtual_hip - hip
     a, b = cross(up, foot - hip), cross(along, up)
-    return arccos(a @ b / (norm(a) * norm(b)))
+    return arccos(dot(a, b) / (norm(a) * norm(b)))
 
 
 def hip_angle_corrected(hip: Floats, virtual_hip: Floats, foot: Floats, along: Floats) -> Any:
@@ -113,7 +113,7 @@ def a2(thigh: float, shin: float, g: float) -> Any:
 
 def a4(h: Floats, g: Floats) -> Any:
     """Step 5."""
-    return arccos(h @ g / (norm(h) * norm(g)))
+    return arccos(dot(h, g) / (norm(h) * norm(g)))
 
 
 def a4_corrected(h: Floats, g: Floats, up: Floats) -> Any:

@@ -49,7 +49,21 @@ _COUNTED: Final = ("range", "eye", "zeros", "ones")
 
 _BETWEEN: Final = "any bound between rounding and the distance of two solutions tells the same rows apart"
 
+_EVEN: Final = "a cosine or a square, which has no sign of its argument"
+
 EQUIVALENT: Final[dict[tuple[str, str], str]] = {
+    ("000:2.2.2.5", "3:11 factors swapped"): "a rotation about z and a shift along it commute",
+    ("000:3.1.0.1", "3:11 factors swapped"): "A_4^5, which the table lacks, is the unit matrix",
+    ("000:3.3.0.6", "3:68 − → +"): _EVEN,
+    ("000:3.3.0.6", "4:32 − → +"): _EVEN,
+    ("000:3.3.0.6", "4:44 Sub → Add"): _EVEN,
+    ("000:3.3.0.6", "4:69 − → +"): _EVEN,
+    ("000:3.3.0.6", "4:86 − → +"): _EVEN,
+    ("000:3.3.0.7", "3:30 Mult → Div"): "the sine is ±1 where the formula is meant",
+    ("000:3.3.0.9", "3:43 − → +"): "half a turn is the same both ways",
+    ("000:3.3.0.11", "3:12 Sub → Add"): "this copy is the correction",
+    ("000:3.3.0.14", "4:43 Add → Sub"): _EVEN,
+    ("000:3.3.0.15", "3:30 Mult → Div"): "the sine is ±1 where the formula is meant",
     ("001:task-1b", "4:24 0.41 → 0.4141"): "rounds to the two decimals that are printed",
     ("004:head-chain", "3:11 factors swapped"): "a rotation about z and a shift along it commute",
     ("004:theta_1-row-6", "3:13 0 → 0.01"): "where the row stands every yaw is a solution",

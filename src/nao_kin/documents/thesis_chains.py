@@ -249,7 +249,6 @@ def _table_claim(number: int, side: Side, table: Form, formula: str) -> Claim:
         domain=f"{_LIMITS}; base and end exact",
         conventions={
             "θ_3 counts against the robot's ElbowYaw": _rows_check(side, eq_2_2_2_6, _AGAINST),
-            _MODIFIED_READ: _rows_check(side, _modified, np.ones(4)),
             _COUNTED: _rows_check(side, _modified, _AGAINST),
         },
     )

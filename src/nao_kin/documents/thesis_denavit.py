@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pinocchio as pin
+from numpy import dot
 
 from nao_kin.documents.claim import Claim, Measured
 from nao_kin.documents.sampling import deviation
@@ -85,10 +86,10 @@ def dh_parameters(T_0: Floats, T_1: Floats) -> tuple[float, float, float, float]
     z_0, z_1, x_0, x_1 = T_0[:3, 2], T_1[:3, 2], T_0[:3, 0], T_1[:3, 0]
     between = T_1[:3, 3] - T_0[:3, 3]
     common = np.cross(z_0, z_1)
-    a = abs(between @ common) / np.linalg.norm(common)
-    alpha = math.atan2(common @ x_1, z_0 @ z_1)
-    d = (between - (between @ x_1) * x_1) @ z_0
-    theta = math.atan2(np.cross(x_0, x_1) @ z_0, x_0 @ x_1)
+    a = abs(dot(between, common)) / np.linalg.norm(common)
+    alpha = math.atan2(dot(common, x_1), dot(z_0, z_1))
+    d = dot(between, z_0)  # x_1 is square to z_0, so going along it changes nothing
+    theta = math.atan2(dot(np.cross(x_0, x_1), z_0), dot(x_0, x_1))
     return float(a), alpha, float(d), theta
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from numpy import dot
 from numpy.linalg import norm
 
 if TYPE_CHECKING:
@@ -78,4 +79,4 @@ def base_and_tip(n: int) -> tuple[int, int]:
 
 def eq_3_4_0_1(d_i: Floats, d_next: Floats) -> Any:
     """(3.4.0.1): cos θ_i."""
-    return d_i @ d_next / (norm(d_i) * norm(d_next))
+    return dot(d_i, d_next) / (norm(d_i) * norm(d_next))

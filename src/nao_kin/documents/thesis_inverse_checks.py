@@ -85,6 +85,15 @@ def gives(
     return check
 
 
+def either_way(robots: Check, tables: Check) -> Check:
+    """Both counts of θ_3 at once: what holds without saying which one is meant holds for both."""
+
+    def check(form: Form) -> Measured:
+        return max(robots(form), tables(form), key=lambda measured: measured.residual)
+
+    return check
+
+
 def _off(found: Any, wanted: float) -> float:
     return abs(float(wrapped(found - wanted)))
 

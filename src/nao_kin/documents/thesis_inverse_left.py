@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from nao_kin.documents import thesis_inverse as forms
 from nao_kin.documents.claim import Claim, Correction
 from nao_kin.documents.thesis_inverse_checks import (
+    either_way,
     gives,
     pipeline,
     shoulder_vector,
@@ -21,10 +22,10 @@ from nao_kin.se3 import translation
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.documents.claim import Check, Form
-    from nao_kin.documents.thesis_arms import DescribedArm
+    from nao_kin.documents.thesis_arms import DescribedArm, Side
     from nao_kin.documents.thesis_inverse_checks import Call
 
-__all__ = ["CLAIMS", "COUNTED", "DESCRIBED", "SQUARED", "elbow_roll", "shoulder_pitch", "straight", "upper_arm_pitch"]
+__all__ = ["CLAIMS"]
 
 DESCRIBED: Final = "joint angles of the described arm (V5 model, ElbowOffsetY at the shoulder, no HandOffsetZ)"
 COUNTED: Final = "θ_3 counts against the robot's ElbowYaw, as the table of section 3.1 has it"
@@ -40,12 +41,14 @@ def elbow_roll(form: Form, arm: DescribedArm, A: Floats, _theta: Floats) -> floa
     return float(form(A, _MM * arm.shoulder, _MM * arm.l3, _MM * arm.l4))
 
 
-def _shoulder_roll(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
+def shoulder_roll(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
+    """Calls (3.3.0.3) or (3.3.0.11)."""
     first, second = form(A, theta[3], _MM * arm.l1, _MM * arm.l3, _MM * arm.l4)
     return first, second
 
 
-def _elbow_yaw(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> float:
+def elbow_yaw(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> float:
+    """Calls (3.3.0.4), (3.3.0.5) and their like."""
     return float(form(A, theta[1]))
 
 
@@ -91,29 +94,26 @@ def straight(q: Floats) -> Floats:
     return np.array([q[0], 0.0, math.copysign(_HALF, q[2]), q[3]])
 
 
-def _mirrored(t: float) -> float:
+def mirrored(t: float) -> float:
+    """The second value of θ_2."""
     return math.pi - t
 
 
-def _opposite(t: float) -> float:
+def opposite(t: float) -> float:
+    """The second value of θ_1."""
     return -t
 
 
-def _yaw(branch: str) -> tuple[Check, dict[str, Check]]:
-    where = small_yaw if branch == "small" else large_yaw
-    plain = gives("left", 2, _elbow_yaw, where=where)
-    return plain, {COUNTED: gives("left", 2, _elbow_yaw, where=where, counts=table_counts)}
+def counted(side: Side, joint: int, call: Call, **options: Any) -> tuple[Check, dict[str, Check]]:
+    """The check of a formula with θ_3 in it, as it stands and as the tables count θ_3."""
+    tables = gives(side, joint, call, counts=table_counts, **options)
+    return either_way(gives(side, joint, call, **options), tables), {COUNTED: tables}
 
 
-def _pitch(call: Call, **options: object) -> tuple[Check, dict[str, Check]]:
-    plain = gives("left", 0, call, both=_opposite, **options)  # type: ignore[arg-type]
-    read = gives("left", 0, call, both=_opposite, counts=table_counts, **options)  # type: ignore[arg-type]
-    return plain, {COUNTED: read}
-
-
-_SMALL, _LARGE = _yaw("small"), _yaw("large")
-_GENERIC = _pitch(shoulder_pitch, where=clear_of_quarter)
-_AT_QUARTER = _pitch(shoulder_pitch, where=rolled, place=at_quarter)
+_SMALL = counted("left", 2, elbow_yaw, where=small_yaw)
+_LARGE = counted("left", 2, elbow_yaw, where=large_yaw)
+_GENERIC = counted("left", 0, shoulder_pitch, both=opposite, where=clear_of_quarter)
+_AT_QUARTER = counted("left", 0, shoulder_pitch, both=opposite, where=rolled, place=at_quarter)
 
 
 CLAIMS: Final = (
@@ -176,7 +176,7 @@ CLAIMS: Final = (
         latex=r"\theta_2 = \pm\arccos \frac{A_{(2,4)} - l_1 - \frac{l_4 \sin\theta_4 A_{(2,2)}}{\cos\theta_4}}"
         r"{l_3 + l_4\cos\theta_4 + l_4\frac{\sin^2\theta_4}{\cos\theta_4}} + \frac{\pi}{2}",
         printed=forms.eq_3_3_0_3,
-        check=gives("left", 1, _shoulder_roll, both=_mirrored),
+        check=gives("left", 1, shoulder_roll, both=mirrored),
         reference=DESCRIBED,
         domain=f"{_LIMITS}; holds for cos θ_4 ≠ 0. The lower sign gives |θ_2| < π/2, the other π − θ_2",
         unit="rad",
@@ -243,7 +243,7 @@ CLAIMS: Final = (
         formula="Â = A (T_4^End)⁻¹, θ_1 = ± arccos(Â_(1,4) / l_3)",
         latex=r"\hat A = A (T_4^{End})^{-1},\quad \theta_1 = \pm\arccos \frac{\hat A_{(1,4)}}{l_3}",
         printed=forms.eq_3_3_0_8,
-        check=gives("left", 0, upper_arm_pitch, both=_opposite, place=straight),
+        check=gives("left", 0, upper_arm_pitch, both=opposite, place=straight),
         reference=DESCRIBED,
         domain="200 postures with θ_3 = ±π/2 and θ_2 = 0; holds wherever θ_2 = 0",
         unit="rad",

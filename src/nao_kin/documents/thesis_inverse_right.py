@@ -9,15 +9,19 @@ from nao_kin.documents import thesis_inverse as forms
 from nao_kin.documents.claim import Claim, Correction
 from nao_kin.documents.thesis_inverse_checks import gives, hand_turned_back, height_of_shoulder, pipeline, table_counts
 from nao_kin.documents.thesis_inverse_left import (
-    COUNTED,
     DESCRIBED,
     SQUARED,
     at_quarter,
     clear_of_quarter,
+    counted,
     elbow_roll,
+    elbow_yaw,
     large_yaw,
+    mirrored,
+    opposite,
     rolled,
     shoulder_pitch,
+    shoulder_roll,
     small_yaw,
     straight,
     upper_arm_pitch,
@@ -35,25 +39,13 @@ _MM: Final = 1000.0
 _TURNED: Final = rotation_z(-math.pi).homogeneous
 
 
-def _shoulder_roll(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
-    first, second = form(A, theta[3], _MM * arm.l1, _MM * arm.l3, _MM * arm.l4)
-    return first, second
-
-
 def _with_last_turn(form: Form, arm: DescribedArm, A: Floats, theta: Floats) -> tuple[float, float]:
-    return _shoulder_roll(form, arm, A @ _TURNED, theta)
+    return shoulder_roll(form, arm, A @ _TURNED, theta)
 
 
-def _elbow_yaw(form: Form, _arm: DescribedArm, A: Floats, theta: Floats) -> float:
-    return float(form(A, theta[1]))
-
-
-def _mirrored(t: float) -> float:
-    return math.pi - t
-
-
-def _opposite(t: float) -> float:
-    return -t
+_LARGE = counted("right", 2, elbow_yaw, where=large_yaw)
+_GENERIC = counted("right", 0, shoulder_pitch, both=opposite, where=clear_of_quarter)
+_AT_QUARTER = counted("right", 0, shoulder_pitch, both=opposite, where=rolled, place=at_quarter)
 
 
 def l_2(shoulder_offset_z: float) -> float:
@@ -103,14 +95,14 @@ CLAIMS: Final = (
         latex=r"\theta_2 = \pm\arccos \frac{-A'_{(2,4)} - l_1 - \frac{l_4 \sin\theta_4 A'_{(2,2)}}{\cos\theta_4}}"
         r"{l_3 + l_4\cos\theta_4 + l_4\frac{\sin^2\theta_4}{\cos\theta_4}} - \frac{\pi}{2}",
         printed=forms.eq_3_3_0_11,
-        check=gives("right", 1, _shoulder_roll, both=_mirrored),
+        check=gives("right", 1, shoulder_roll, both=mirrored),
         reference=DESCRIBED,
         domain="200 postures inside the limits; cos θ_4 ≠ 0. With A' as (3.3.0.9) has it, the last term above the"
         " line needs a plus: … + l_4 sin θ_4 A'_(2,2) / cos θ_4",
         unit="rad",
         conventions={
             "A stands in place of A': the formula belongs to the arm that ends with R_z,−π": gives(
-                "right", 1, _with_last_turn, both=_mirrored
+                "right", 1, _with_last_turn, both=mirrored
             )
         },
         correction=Correction(
@@ -129,7 +121,7 @@ CLAIMS: Final = (
         formula="θ_3 = −arcsin(A'_(2,3) / sin(θ_2 + π/2))",
         latex=r"\theta_3 = -\arcsin \frac{A'_{(2,3)}}{\sin(\theta_2 + \frac{\pi}{2})}",
         printed=forms.eq_3_3_0_12,
-        check=gives("right", 2, _elbow_yaw, where=small_yaw, counts=table_counts),
+        check=gives("right", 2, elbow_yaw, where=small_yaw, counts=table_counts),
         reference=f"{DESCRIBED}, θ_3 as Table 4 and (3.3.0.13) to (3.3.0.15) count it",
         domain="200 postures with |θ_3| < π/2. It gives the robot's RElbowYaw, which counts the other way",
         unit="rad",
@@ -147,11 +139,11 @@ CLAIMS: Final = (
         formula="θ_3 = π − arcsin(A'_(2,3) / sin(θ_2 + π/2))",
         latex=r"\theta_3 = \pi - \arcsin \frac{A'_{(2,3)}}{\sin(\theta_2 + \frac{\pi}{2})}",
         printed=forms.eq_3_3_0_13,
-        check=gives("right", 2, _elbow_yaw, where=large_yaw),
+        check=_LARGE[0],
         reference=DESCRIBED,
         domain="200 postures with |θ_3| > π/2, to whole turns; holds there, for cos θ_2 ≠ 0",
         unit="rad",
-        conventions={COUNTED: gives("right", 2, _elbow_yaw, where=large_yaw, counts=table_counts)},
+        conventions=_LARGE[1],
     ),
     Claim(
         id="000:3.3.0.14",
@@ -163,13 +155,11 @@ CLAIMS: Final = (
         r" \cos(\theta_2 + \frac{\pi}{2})}{\cos\theta_3}}{\cos\theta_3 + \frac{\cos^2(\theta_2 + \frac{\pi}{2})"
         r" \sin^2\theta_3}{\cos\theta_3}}",
         printed=forms.eq_3_3_0_14,
-        check=gives("right", 0, shoulder_pitch, where=clear_of_quarter, both=_opposite),
+        check=_GENERIC[0],
         reference=DESCRIBED,
         domain="200 postures with |θ_3| ≠ π/2; holds there. The sign is left to step 7",
         unit="rad",
-        conventions={
-            COUNTED: gives("right", 0, shoulder_pitch, where=clear_of_quarter, both=_opposite, counts=table_counts)
-        },
+        conventions=_GENERIC[1],
     ),
     Claim(
         id="000:3.3.0.15",
@@ -178,15 +168,11 @@ CLAIMS: Final = (
         formula="θ_1 = ± arccos(A'_(1,3) / (cos(θ_2 + π/2) sin θ_3))",
         latex=r"\theta_1 = \pm\arccos \frac{A'_{(1,3)}}{\cos(\theta_2 + \frac{\pi}{2}) \sin\theta_3}",
         printed=forms.eq_3_3_0_15,
-        check=gives("right", 0, shoulder_pitch, where=rolled, place=at_quarter, both=_opposite),
+        check=_AT_QUARTER[0],
         reference=DESCRIBED,
         domain="200 postures with θ_3 = ±π/2 and θ_2 ≠ 0; holds there",
         unit="rad",
-        conventions={
-            COUNTED: gives(
-                "right", 0, shoulder_pitch, where=rolled, place=at_quarter, both=_opposite, counts=table_counts
-            )
-        },
+        conventions=_AT_QUARTER[1],
     ),
     Claim(
         id="000:3.3.0.16",
@@ -195,7 +181,7 @@ CLAIMS: Final = (
         formula="Â = A' (T_4^End)⁻¹, θ_1 = ± arccos(Â_(1,4) / l_3)",
         latex=r"\hat A = A' (T_4^{End})^{-1},\quad \theta_1 = \pm\arccos \frac{\hat A_{(1,4)}}{l_3}",
         printed=forms.eq_3_3_0_16,
-        check=gives("right", 0, upper_arm_pitch, place=straight, both=_opposite),
+        check=gives("right", 0, upper_arm_pitch, place=straight, both=opposite),
         reference=DESCRIBED,
         domain="200 postures with θ_3 = ±π/2 and θ_2 = 0; holds wherever θ_2 = 0",
         unit="rad",

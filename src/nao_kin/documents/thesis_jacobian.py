@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy import dot
 from numpy.linalg import inv
 
 from nao_kin.documents.sampling import derivative
@@ -42,12 +43,12 @@ def eq_3_2_1_1(J: Floats, e: Floats, alpha: float) -> Floats:
 
 def satz_1(J: Floats, e: Floats) -> tuple[float, float, float]:
     """Satz 1 and its proof: three expressions that are equal and not negative."""
-    return float((J @ J.T @ e) @ e), float((J.T @ e) @ (J.T @ e)), float(np.linalg.norm(J.T @ e) ** 2)
+    return float(dot(J @ (J.T @ e), e)), float(dot(J.T @ e, J.T @ e)), float(np.linalg.norm(J.T @ e) ** 2)
 
 
 def eq_3_2_1_2(J: Floats, e: Floats) -> float:
     """(3.2.1.2): α."""
-    return float(e @ (J @ J.T @ e) / ((J @ J.T @ e) @ (J @ J.T @ e)))
+    return float(dot(e, J @ (J.T @ e)) / dot(J @ (J.T @ e), J @ (J.T @ e)))
 
 
 def eq_3_2_2_1(J: Floats, e: Floats) -> Floats:
@@ -57,7 +58,7 @@ def eq_3_2_2_1(J: Floats, e: Floats) -> Floats:
 
 def eq_3_2_2_2(J: Floats, e: Floats, delta_theta: Floats) -> tuple[Floats, Floats]:
     """(3.2.2.2): both sides of the normal equations."""
-    return J.T @ J @ delta_theta, J.T @ e
+    return J.T @ (J @ delta_theta), J.T @ e
 
 
 def eq_3_2_2_3(J: Floats, e: Floats) -> Floats:

@@ -49,8 +49,8 @@ def eq_2_2_1_4(rotations: Sequence[Floats], p_n: Floats) -> Floats:
 
 def fixed_axes_remark(rotations: Sequence[Floats], p: Floats) -> Floats:
     """The remark after (2.2.1.4): turns about axes of frame 0 one after another, multiplied in reversed order."""
-    product = rotations[-1]
-    for rotation in rotations[-2::-1]:
+    product = np.eye(3)
+    for rotation in reversed(rotations):
         product = product @ rotation
     return product @ p
 
