@@ -111,13 +111,11 @@ def shoulder_to_forearm(side: Side, q: Floats) -> Floats:
     return T
 
 
-def arm_configurations(
-    side: Side, count: int, seed: int, keep: Callable[[Floats], bool] = lambda q: bool(q.size)
-) -> Floats:
+def arm_configurations(side: Side, count: int, seed: int, keep: Callable[[Floats], bool] | None = None) -> Floats:
     """Configurations (N, 4) of the robot's arm, uniform inside its limits, of those that are to be kept."""
     chain, rng, found = robot_arm(side), np.random.default_rng(seed), list["Floats"]()
     while len(found) < count:
         q = rng.uniform(chain.lower, chain.upper)
-        if keep(q):
+        if keep is None or keep(q):
             found.append(q)
     return np.array(found)
