@@ -62,12 +62,12 @@ def _share(
 ) -> Floats:
     """What a task adds to the step of those above it."""
     rest, share = task.e - task.J @ step, np.empty_like(step)
-    uphill = (task.J @ _projector(above, np.zeros_like(at_lower))).T @ rest
-    held = _outward(uphill, at_lower, at_upper)
+    J, m = task.J @ _projector(above, np.zeros_like(at_lower)), len(rest)
+    held = _outward(J.T @ rest, at_lower, at_upper)
     while True:
-        J = np.ascontiguousarray(task.J @ _projector(above, held))
-        m = len(rest)
-        rule(J, rest, np.empty((m, m)), np.empty(m), share)
+        if held.any():
+            J = task.J @ _projector(above, held)
+        rule(np.ascontiguousarray(J), rest, np.empty((m, m)), np.empty(m), share)
         # Holding one joint can turn another outwards; each turn holds more of them, so this ends.
         pushed = ~held & _outward(step + share, at_lower, at_upper) & (share != 0.0)
         if not pushed.any():

@@ -30,11 +30,15 @@ if TYPE_CHECKING:
 
 __all__ = ["run_tree"]
 
-SETTLING: Final = 100
+SETTLING: Final = 200
 """Iterations at most that look for the best compromise where not all targets can be met."""
 
-SHORTEST: Final = 1e-4
-"""A compromise is found when no step is better that is longer than this part of the rule's."""
+SHORTEST: Final = 1e-6
+"""A compromise is found when the largest joint step that makes it better is shorter than this [rad or m]."""
+
+AT_END: Final = 1e-6
+"""A joint this near to an end of its range [rad or m] is at it for a compromise: the shortest step of all would be cut
+off there, and what is left of it need not be better."""
 
 REPAIRS: Final = 4
 """Steps at most that bring the tips which come first back, after a step of those which come after them."""
@@ -133,25 +137,29 @@ class _Search:
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
-            step = self._step(q, seen, levels)
+            step = self._step(q, seen, levels, self.rule)
             if not np.isfinite(step).all():
                 return Status.NOT_FINITE
             q = into_limits(self.tree, q + step)
         return Status.SOLVED if reached else Status.BUDGET_SPENT
 
     def _settle(self) -> None:
-        """Takes the best joints on to where no step makes an error smaller without one of a level above growing."""
-        q, stride = self.best_q, 1.0
+        """Takes the best joints on to where no step makes an error smaller without one of a level above growing.
+
+        Levenberg's damping, more after a step that was worse and less after one that was better: close to what cannot
+        be met the error's own curvature counts, of which a method for reachable targets knows nothing.
+        """
+        q, damping = self.best_q, 1e-3
         seen = self._look(q)
         for _ in range(min(SETTLING, self.budget.iterations)):
-            step = self._step(q, seen, self.levels)
-            if stride < SHORTEST or not np.isfinite(step).all():
+            step = self._step(q, seen, self.levels, _damped(damping), AT_END)
+            if not np.isfinite(step).all() or np.abs(step).max() < SHORTEST:
                 break
-            trial, nearer = self._repaired(into_limits(self.tree, q + stride * step))
+            trial, nearer = self._repaired(into_limits(self.tree, q + step))
             if self._better(nearer, seen):
-                q, seen, stride = trial, nearer, min(1.0, 2.0 * stride)
+                q, seen, damping = trial, nearer, damping / 2.0
             else:
-                stride *= 0.25
+                damping *= 4.0
         self.best_q = q
 
     def _repaired(self, q: Floats) -> tuple[Floats, dict[str, Seen]]:
@@ -160,7 +168,7 @@ class _Search:
         for _ in range(REPAIRS if above else 0):
             if max(seen[tip].merit(self.tolerances) for level in above for tip in level) <= POLISHED:
                 break
-            step = self._step(q, seen, above)
+            step = self._step(q, seen, above, self.rule, AT_END)
             if not np.isfinite(step).all():
                 break
             q = into_limits(self.tree, q + step)
@@ -173,10 +181,12 @@ class _Search:
                 return this < that
         return False
 
-    def _step(self, q: Floats, seen: Mapping[str, Seen], levels: Levels) -> Floats:
+    def _step(
+        self, q: Floats, seen: Mapping[str, Seen], levels: Levels, rule: UpdateRule, margin: float = 0.0
+    ) -> Floats:
         self.iterations += 1
         tasks = [stacked(self.aims[tip].task(q, seen[tip]) for tip in level) for level in levels]
-        step = prioritised_step(tasks, self.rule, q <= self.tree.lower, q >= self.tree.upper)
+        step = prioritised_step(tasks, rule, q <= self.tree.lower + margin, q >= self.tree.upper - margin)
         largest = float(np.abs(step).max())
         return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
 
@@ -198,6 +208,17 @@ class _Search:
         met = [max(merits[tip] for tip in level) <= REACHED for level in self.levels]
         costs = [sum(self.aims[tip].cost(seen[tip]) for tip in level) for level in self.levels]
         return (*(0.0 if done else cost for done, cost in zip(met, costs, strict=True)), max(merits.values()))
+
+
+def _damped(damping: float) -> UpdateRule:
+    """Least squares with a damping that is given, called as the rules of `nao_kin.ik.rules` are."""
+
+    def rule(J: Floats, e: Floats, A: Floats, y: Floats, step: Floats) -> None:
+        A[:] = J @ J.T + damping * np.eye(len(e))
+        y[:] = np.linalg.solve(A, e)
+        step[:] = J.T @ y
+
+    return rule
 
 
 def _trace(rows: Sequence[TraceRow]) -> TreeTrace:
