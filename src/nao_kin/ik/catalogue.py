@@ -62,6 +62,7 @@ class Method:
         orientation_error: Form of the orientation error it sees, see `nao_kin.ik.orientation`.
         weighs: Number of axes, in the order of `nao_kin.ik.target.AXES`, that may have weights other than 1.
         hinges: Whether it works on chains of hinges with a motor each only.
+        several_tips: Whether it serves several tips at once, see `nao_kin.solve_tree`.
         budget: How long it tries unless told otherwise; slow methods need more patience.
     """
 
@@ -74,6 +75,7 @@ class Method:
     orientation_error: int = ROTATION_VECTOR
     weighs: int = 6
     hinges: bool = False
+    several_tips: bool = True
     budget: Budget = field(default_factory=Budget)
 
     @property
@@ -161,6 +163,7 @@ _ROWS: Final = (
         parameters=(_GAIN, Parameter("transpose_gain", 1.5, "1/σ²", "K of the transpose")),
         reference="practicum, section 1.8",
         choose_it="to repeat the practicum: the better of pseudo-inverse and transpose at every step",
+        several_tips=False,
         budget=_STEADY,
     ),
     Method(
@@ -181,6 +184,7 @@ _ROWS: Final = (
         choose_it="to repeat the practicum: differences of roll, pitch and yaw; fails at pitch ±90°",
         orientation_error=EULER,
         weighs=3,
+        several_tips=False,
         budget=Budget(patience=20),
     ),
     Method(
@@ -192,6 +196,7 @@ _ROWS: Final = (
         choose_it="to repeat the practicum: vector part of the quaternion; fails at half a turn",
         orientation_error=QUATERNION,
         weighs=3,
+        several_tips=False,
         budget=Budget(patience=20),
     ),
     Method(
@@ -241,6 +246,7 @@ _ROWS: Final = (
         parameters=(),
         reference="Wang and Chen 1991, cyclic coordinate descent",
         choose_it="long chains and any joint, without a Jacobian; the error never grows",
+        several_tips=False,
         weighs=0,
         budget=_STEADY,
     ),
@@ -251,6 +257,7 @@ _ROWS: Final = (
         parameters=(),
         reference="Brown, Latombe and Montgomery 2004, follow the leader",
         choose_it="to see the chain dragged by its tip like a rope",
+        several_tips=False,
         weighs=0,
         hinges=True,
         budget=_STEADY,

@@ -18,7 +18,7 @@ from nao_kin.ik.catalogue import METHODS, Method, method_named
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.loop import Budget, Update, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
-from nao_kin.ik.scales import scales_of
+from nao_kin.ik.scales import chain_scales
 from nao_kin.ik.target import KINDS, Target, TargetLike
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
@@ -201,7 +201,7 @@ def _run_in_python(
 def _update(problem: Problem, method: Method, tables: Tables, parameters: Mapping[str, float] | None) -> Update:
     """The method with its parameters, those that depend on the chain from its stored configurations."""
     chain = problem.chain
-    scales = scales_of(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
+    scales = chain_scales(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
     return Update(method.code, method.tuned(parameters or {}, scales), method.orientation_error)
 
 

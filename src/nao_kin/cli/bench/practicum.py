@@ -83,11 +83,11 @@ def _both(starts: Floats, wanted: Floats, where: str) -> dict[str, Floats]:
     from nao_kin.cli.output import progress
     from nao_kin.documents.practicum import jaco2
     from nao_kin.documents.practicum_ik import ik_pseudo_inverse, ik_transpose
-    from nao_kin.ik.scales import scales_of
+    from nao_kin.ik.scales import chain_scales
 
     arm = jaco2()
     configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (256, 6))
-    gain = 1.5 / scales_of(arm, "position", configurations).singular_value ** 2
+    gain = 1.5 / chain_scales(arm, "position", configurations).singular_value ** 2
     pairs = list(zip(starts, wanted, strict=True))
     methods: dict[str, Callable[[Floats, Floats], TaskResult]] = {
         "transpose": lambda q, p: ik_transpose(q, p, gain=gain, chain=arm),

@@ -62,7 +62,7 @@ def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]
             row = attempt(tree, wishes, f"{what} from {base}", priority=priority or None)
             rows.append({"base": base, "what": what} | row)
             bounds.append(Goal(f"{base}: {what}, solved %", row["solved"], _SOLVED_PERCENT))
-            bounds.append(Goal(f"{base}: {what}, falsely solved", row["false"], 0.0, at_least=False))
+    bounds.append(Goal("reachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("what", "both hands"),
@@ -79,15 +79,16 @@ def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goa
     from nao_kin.cli.bench.tip_targets import attempt, reachable_wishes, with_far_tip
     from nao_kin.ik.loop import Budget
 
+    few = Budget(restarts=5)  # of most targets there is nothing to be found however long it takes
     rows, bounds = list[dict[str, Any]](), list[Goal]()
     for base in _BASES:
         tree = robot.tree(base, _HANDS)
         wishes = with_far_tip(tree, "RArm", reachable_wishes(tree, "position", targets, seed), seed)
         for priority in (None, ("LArm", "RArm")):
-            row = attempt(tree, wishes, f"unreachable from {base}", priority=priority, budget=Budget(restarts=10))
+            row = attempt(tree, wishes, f"unreachable from {base}", priority=priority, budget=few)
             rows.append({"base": base, "priority": "left first" if priority else "alike"} | row)
-            bounds.append(Goal(f"{base}: unreachable, falsely solved", row["false"], 0.0, at_least=False))
         bounds.append(Goal(f"{base}: left first, left hand served %", rows[-1]["LArm"], _SOLVED_PERCENT))
+    bounds.append(Goal("unreachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("priority", "hands count"),
