@@ -49,8 +49,10 @@ def hinge_pass(
     axes: Floats,
     tip: Floats,
     memory: Floats,
-) -> None:
+) -> bool:
     """One iteration towards a position: a reach pass from the target to the base, an outward pass back to the tip.
+
+    Returns whether the target is within reach of the points; if not, the tip heads for the nearest place that is.
 
     Args:
         follow: Follow-the-leader instead of FABRIK: the outward pass makes links parallel to those of the reach pass,
@@ -71,6 +73,10 @@ def hinge_pass(
     outward_pass(follow, 0, joints, limits, coupled, count, first, slide, wanted, q, axes, tip)
     move_inside(q, limits, coupled)
     place(joints, q, axes, tip)
+    off = 0.0
+    for i in range(3):
+        off = max(off, abs(wanted[0, i] - goal[i, 3]))
+    return count == 0 or off == 0.0
 
 
 @leaf_jit
