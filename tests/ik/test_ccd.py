@@ -106,22 +106,21 @@ def test_a_sliding_joint_goes_to_the_foot_of_the_target_or_to_its_end() -> None:
 def test_a_column_of_two_joints_comes_to_rest_where_nothing_is_left_to_gain(
     kind: str, rng: np.random.Generator
 ) -> None:
-    """At rest the slope of the error by the column is nothing, or it points out of the range at an end."""
+    """At rest, the parabola through the errors around it promises no gain inside the range above rounding."""
     chain = robot("nao_v50_h25").chain("l_sole", "r_sole")
-    arm, column = Arm.of(chain), chain.joint_names.index("LHipYawPitch")
+    arm, column, h = Arm.of(chain), chain.joint_names.index("LHipYawPitch"), 1e-4
     k = int(np.flatnonzero(arm.joints[:-1, COLUMN] == column)[-1])
     for q in random_configurations(chain, 20, rng):
         goal = _goal(kind, chain, rng)
         for _ in range(100):
             q = _moved(arm, kind, goal, k, q)
-        step = np.zeros(len(q))
-        step[column] = 1e-5
-        ends = (_error(kind, goal, arm.closeness, chain, q + sign * step) for sign in (1.0, -1.0))
-        slope = -np.subtract(*ends) / 2e-5
-        at_an_end = (slope > 0.0 and q[column] == chain.upper[column]) or (
-            slope < 0.0 and q[column] == chain.lower[column]
-        )
-        assert at_an_end or abs(slope) < 1e-6
+        step = h * np.eye(len(q))[column]
+        less, here, more = (_error(kind, goal, arm.closeness, chain, q + sign * step) for sign in (-1.0, 0.0, 1.0))
+        slope, curvature = (more - less) / (2.0 * h), (more - 2.0 * here + less) / h**2
+        at_upper, at_lower = q[column] == chain.upper[column], q[column] == chain.lower[column]
+        if not ((at_upper and slope < 0.0) or (at_lower and slope > 0.0)):
+            assert curvature > 0.0
+            assert 0.5 * slope**2 / curvature < 1e-12 * max(1.0, here)
 
 
 def test_pose_targets_near_the_start_are_mostly_reached(rng: np.random.Generator) -> None:

@@ -105,14 +105,20 @@ def test_two_thousand_chains_and_targets_of_any_kind_give_finite_joints_inside_t
         q = np.clip(rng.normal(size=n) * (case % 3), path.lower, path.upper)
         axes, tip = arm.placed(q)
         places = [rng.normal(size=3), axes[rng.integers(n), 3:], tip[9:], 10.0 * tip[9:], np.zeros(3)]
-        goal, missing = at(*places[case % 5]), np.inf
-        for sweeps in range(3):
+        goal, missing = at(*places[case % 5]), arm.missing(at(*places[case % 5]), q)
+        for _ in range(3):
+            may_leave = method != "ccd" and _stands_in_line(arm, goal, q)
             q = arm.swept(method, goal, q)
             assert np.isfinite(q).all()
             assert (q >= path.lower).all()
             assert (q <= path.upper).all()
             before, missing = missing, arm.missing(goal, q)
-            assert sweeps == 0 or missing <= before + 1e-14  # the first may leave a straight line
+            assert may_leave or missing <= before + 1e-14
+
+
+def _stands_in_line(arm: Arm, goal: np.ndarray, q: np.ndarray) -> bool:
+    points = np.vstack([_points(arm, q), goal[:3, 3]])
+    return bool(np.linalg.svd(points - points[0], compute_uv=False)[1:].max() < 1e-8)
 
 
 LINKS = [(1.0, 1.0), (1.0, 1.0, 1.0), (3.0, 1.0), (1.0, 3.0, 1.0, 0.5), (0.2, 0.3, 3.0, 0.1)]
@@ -142,13 +148,17 @@ def test_out_of_reach_the_nearest_point_is_found(
 
 
 def _ball_chain(rng: np.random.Generator, links: int) -> Arm:
-    """Ball joints without limits: three axes at right angles in each point."""
+    """Ball joints without limits: three axes at right angles in each point, none near the next point."""
     joints = []
     for k in range(3 * links):
-        offset = rng.normal(size=3) if k and k % 3 == 0 else np.zeros(3)
+        offset = _slanted(rng) if k and k % 3 == 0 else np.zeros(3)
         joints.append(PathJoint(at(*offset), np.eye(3)[k % 3], False, k))
     free = np.full(3 * links, np.inf)
-    return Arm.along(joint_path(joints, at(*rng.normal(size=3)), -free, free))
+    return Arm.along(joint_path(joints, at(*_slanted(rng)), -free, free))
+
+
+def _slanted(rng: np.random.Generator) -> np.ndarray:
+    return rng.uniform(0.3, 1.0, size=3) * rng.choice([-1.0, 1.0], size=3)
 
 
 def _points(arm: Arm, q: np.ndarray) -> np.ndarray:
@@ -156,7 +166,7 @@ def _points(arm: Arm, q: np.ndarray) -> np.ndarray:
     (axes, tip), m = arm.placed(q), len(arm.joints) - 1
     first, slide = np.zeros(m + 1), np.zeros(m + 1)
     count = find_groups(chain_length(arm.joints), axes, tip, first, slide)
-    return np.array([group_point(g, first, slide, axes, *tip[9:]) for g in range(count, -1, -1)])
+    return np.array([group_point(g, first, slide, axes, tip[9], tip[10], tip[11]) for g in range(count, -1, -1)])
 
 
 def _passed(arm: Arm, goal: np.ndarray, q: np.ndarray, follow: bool) -> np.ndarray:
@@ -177,12 +187,13 @@ def _dragged(points: np.ndarray, target: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("links", [2, 3, 5])
 def test_on_ball_joints_a_pass_is_that_of_the_published_algorithm(links: int, rng: np.random.Generator) -> None:
+    """For targets near the tip: far turns may pass near a gimbal lock, where joints that take turns are slow."""
     for _ in range(20):
         arm = _ball_chain(rng, links)
         q = np.zeros(3 * links)
         points = _points(arm, q)
         assert len(points) == links + 1
-        target = points[-1] + 0.1 * rng.normal(size=3)
+        target = _points(arm, 0.05 * rng.normal(size=3 * links))[-1]
         expected, done = fabrik_points(points, target, tolerance=0.0, iterations=1)
         assert done == 1
         np.testing.assert_allclose(_points(arm, _passed(arm, at(*target), q, follow=False)), expected, atol=1e-6)

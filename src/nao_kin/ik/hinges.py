@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CYCLES", "STILL", "carry", "hinge_memory", "hinge_pass", "leave_line", "outward_pass", "want_points"]
 
-CYCLES: Final = 20
-"""Times that the joints of one group take turns."""
+CYCLES: Final = 100
+"""Times that the joints of one group take turns at most. Where two of them move the point nearly the same way they are
+slow, and a pass may end short of what the group could do; the next pass goes on."""
 
 STILL: Final = 1e-9
 """A cycle of turns that moves no joint by more than this [rad] is the last."""
