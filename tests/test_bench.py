@@ -24,6 +24,7 @@ from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
 from nao_kin.cli.output import OutputFormat
 
 IK = ("ik", "--targets", "20", "--batch", "40", "--runs", "1")
+TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
@@ -74,7 +75,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, TIPS])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -98,6 +99,18 @@ def test_ik_solves_everything_alone_in_batches_and_on_many_robots() -> None:
     assert all(row["success"] == 100.0 and row["same_bits"] and row["ratio"] is None for row in data["batch"])
     assert len(data["robots"]) == len(many_chains()[0])
     assert missed(data) == []
+
+
+def test_tips_serves_both_hands_and_believes_no_reach_that_the_model_does_not_confirm() -> None:
+    data = data_of(*TIPS)
+    assert missed(data) == []
+    assert all(row["false"] == 0 for row in data["reachable"] + data["unreachable"])
+    up, forward = data["reach"]
+    # Standing, the shoulder is 85 + 100 + 102.9 + 45.11 + 100 mm above the sole; upper arm and forearm with their
+    # offsets, hypot(105, 15) and hypot(55.95 + 57.75, 12.31), are 220.5 mm long.
+    assert 0.64 < up["still"] < 0.4331 + 0.2205 < up["moving"]
+    assert 0.21 < forward["still"] < 0.2205 < forward["moving"]
+    assert all(row["both"] <= row["moving"] + 1e-3 for row in (up, forward))
 
 
 def test_a_peer_that_lies_has_no_success(fakes: None) -> None:
