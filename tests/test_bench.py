@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -23,9 +23,14 @@ from nao_kin.cli.bench.referee import NEAR, Referee
 from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
 from nao_kin.cli.output import OutputFormat
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 IK = ("ik", "--targets", "20", "--batch", "40", "--runs", "1")
 TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
+METHODS = ("methods", "--targets", "12")
+PRACTICUM = ("practicum", "--targets", "10")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -75,7 +80,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, TIPS])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TIPS])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -111,6 +116,34 @@ def test_tips_serves_both_hands_and_believes_no_reach_that_the_model_does_not_co
     assert 0.64 < up["still"] < 0.4331 + 0.2205 < up["moving"]
     assert 0.21 < forward["still"] < 0.2205 < forward["moving"]
     assert all(row["both"] <= row["moving"] + 1e-3 for row in (up, forward))
+
+
+def test_methods_reach_near_targets_and_none_lies() -> None:
+    data = data_of(*METHODS)
+    # So few targets make percentages coarse; that nobody claims what is not so holds for any number.
+    assert missed(data, "near targets", "NAO arm") == []
+    assert {row["method"] for row in data["easy"]} == set(nk.METHODS)
+    able = {row["method"] for row in data["two_hands"]}
+    assert able == {name for name, method in nk.METHODS.items() if method.several_tips}
+    verdicts = [note for note in data["notes"] if note.startswith(("Thesis", "Practicum"))]
+    assert len(verdicts) >= 14
+    assert all("confirmed" in verdict or "refuted" in verdict for verdict in verdicts)
+
+
+def test_convergence_plots_are_pictures(tmp_path: Path) -> None:
+    from nao_kin.cli.bench.convergence import draw
+    from nao_kin.cli.bench.method_sets import easy
+
+    near = easy(nk.load("nao_v33_h21").chain("left_arm"), "position", 5, np.random.default_rng(0))
+    (written,) = draw([near], tmp_path)
+    assert written.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_practicums_tasks_report_every_fault() -> None:
+    data = data_of(*PRACTICUM)
+    assert missed(data, "pseudo-inverse") == []
+    assert {row["count"] for row in data["task_1ef_near"]} >= {128, 64, 1}
+    assert sum(note.startswith(("1f,", "1g,")) for note in data["notes"]) == 4
 
 
 def test_a_peer_that_lies_has_no_success(fakes: None) -> None:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from nao_kin.ik.problem import IKResult as IKResult
     from nao_kin.ik.problem import Status as Status
     from nao_kin.ik.target import Target as Target
+    from nao_kin.ik.tree import solve_tree as solve_tree
+    from nao_kin.ik.tree_problem import TreeResult as TreeResult
     from nao_kin.known import robot_names as robot_names
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
@@ -60,6 +62,7 @@ _HOME = {
     "Target": "ik.target",
     "Tolerances": "tolerances",
     "Tree": "tree",
+    "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",
     "compare": "crosscheck",
     "document_chain": "documents.chains",
@@ -72,6 +75,7 @@ _HOME = {
     "show": "view.export",
     "solve": "ik.methods",
     "solve_batch": "ik.batch",
+    "solve_tree": "ik.tree",
 }
 
 __all__ = list(_HOME)

@@ -6,7 +6,7 @@ import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 import pinocchio as pin
@@ -20,12 +20,15 @@ from nao_kin.ik.loop import Budget, Update, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
 from nao_kin.ik.scales import chain_scales
 from nao_kin.ik.target import KINDS, Target, TargetLike
+from nao_kin.ik.tree import solve_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
+from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
+    from nao_kin.ik.tree_problem import TreeResult
 
 __all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
 
@@ -53,6 +56,7 @@ _FLOAT64 = np.dtype(np.float64)
 _IDENTITY, _PLACE = np.eye(4), (slice(0, 3), 3)
 
 
+@overload
 def solve(
     chain: Chain,
     target: TargetLike,
@@ -66,11 +70,42 @@ def solve(
     trace: bool = False,
     parameters: Mapping[str, float] | None = None,
     jump: float | None = None,
-) -> IKResult:
+) -> IKResult: ...
+
+
+@overload
+def solve(
+    chain: Tree,
+    target: Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+) -> TreeResult: ...
+
+
+def solve(
+    chain: Chain | Tree,
+    target: TargetLike | Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    engine: Engine = "compiled",
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+    jump: float | None = None,
+) -> IKResult | TreeResult:
     """Joints that bring the tip to a target, measured again before they are returned.
 
     Args:
-        chain: The chain.
+        chain: The chain; or a tree, with targets by tip name, which is `nao_kin.solve_tree` with its usual options.
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
         q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
             inside and the result says so. By default all zeros, moved inside.
@@ -93,6 +128,11 @@ def solve(
         UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
             matches.
     """
+    if isinstance(chain, Tree):
+        if jump is not None:
+            raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
+        options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
+        return solve_tree(chain, cast("Any", target), q0, trace=trace, parameters=parameters, **options)
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
         wanted = Target("pose", target.copy())
