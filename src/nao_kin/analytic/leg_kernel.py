@@ -172,7 +172,8 @@ def _at_roll(
 def _any_roll(leg: Floats, R: _Rotation, t4: float, t45: float, folded: float, free: int, rows: Floats) -> int:
     """Writes the branches of one ankle roll where any would do, the hip being on the axis of the ankle roll.
 
-    It is the one nearest to the middle of its range that brings a branch into the limits, of those tried; or the middle.
+    Of the rolls tried, it is the one nearest to the middle of its range that brings a branch into the limits; if there
+    is none, the middle.
     """
     for i in range(2 * _ROLLS + 2):
         step = (i + 1) // 2 if i <= 2 * _ROLLS else 0  # 0, then outwards on both sides, then 0 again for want of better
@@ -187,10 +188,10 @@ def _any_roll(leg: Floats, R: _Rotation, t4: float, t45: float, folded: float, f
 
 @leaf_jit
 def _inside(leg: Floats, rows: Floats, row: int) -> bool:
+    beyond = -math.inf
     for k in range(6):
-        if abs(rows[row, int(leg[_COLUMNS + k])] - leg[_MIDDLES + k]) > leg[_HALVES + k]:
-            return False
-    return True
+        beyond = max(beyond, abs(rows[row, int(leg[_COLUMNS + k])] - leg[_MIDDLES + k]) - leg[_HALVES + k])
+    return beyond <= ROUNDING
 
 
 @leaf_jit

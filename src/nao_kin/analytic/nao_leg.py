@@ -31,12 +31,21 @@ if TYPE_CHECKING:
 __all__ = ["LABELS", "SINGULARITIES", "recognise"]
 
 LABELS: Final = tuple(
-    f"knee {knee}, ankle {ankle}, hip {hip}" for hip in ("upright", "over") for ankle in ("upright", "over") for knee in "+−"
+    f"knee {knee}, ankle {ankle}, hip {hip}"
+    for hip in ("upright", "over")
+    for ankle in ("upright", "over")
+    for knee in "+−"
 )
 """Knee: the sense in which it is bent, seen from the straight leg. Ankle: whether the hip is on the side of the foot
 that it is on at q = 0, or the foot is rolled over by half a turn. Hip: the same for the hip roll's half turn."""
 
-_FREE: Final = ("both knee branches in one", "any ankle roll", "any hip yaw", "any ankle pitch", "both ankle branches in one")
+_FREE: Final = (
+    "both knee branches in one",
+    "any ankle roll",
+    "any hip yaw",
+    "any ankle pitch",
+    "both ankle branches in one",
+)
 SINGULARITIES: Final = tuple(
     ", ".join(words for bit, words in enumerate(_FREE) if number >> bit & 1) for number in range(1 << len(_FREE))
 )
