@@ -15,6 +15,7 @@ import numpy as np
 
 from nao_kin.analytic.form import Mismatch
 from nao_kin.analytic.hexapod import LABELS, recognise
+from nao_kin.analytic.ranges import middles_and_halves
 from nao_kin.arrays import rows as float_rows
 from nao_kin.arrays import vector
 from nao_kin.chain import outside_limits
@@ -248,7 +249,7 @@ def _branches(chain: Chain, parameters: Floats, p_body: Floats, slack: float) ->
 
     found, counts = np.zeros((len(p_body), BRANCHES, 5)), np.zeros(len(p_body), dtype=np.int64)
     solve_many(parameters, 1, _goals(p_body), np.zeros((1, 0)), slack, found, counts)
-    middle = np.where(np.isfinite(chain.lower) & np.isfinite(chain.upper), 0.5 * (chain.lower + chain.upper), 0.0)
+    middle, _ = middles_and_halves(chain.lower, chain.upper)
     found[:, :, :3] += 2.0 * np.pi * np.round((middle - found[:, :, :3]) / (2.0 * np.pi))
     return found, np.arange(BRANCHES) < counts[:, None]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.analytic.ranges import middles_and_halves
 from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend, wrapped
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 
@@ -51,9 +52,8 @@ def pack(
     leg[_TURN:_ORIGIN], leg[_ORIGIN:_COXA] = T_coxa_base[:3, :3].ravel(), T_coxa_base[:3, 3]
     leg[_COXA:_LATERAL] = lengths
     leg[_LATERAL] = lateral if abs(lateral) > 1e-13 * sum(lengths) else 0.0
-    finite = np.isfinite(path.lower) & np.isfinite(path.upper)
     leg[_SIGNS:_OFFSETS], leg[_OFFSETS:_MIDDLES] = signs, offsets
-    leg[_MIDDLES:] = signs * np.where(finite, 0.5 * (path.lower + path.upper), 0.0) + offsets
+    leg[_MIDDLES:] = signs * middles_and_halves(path.lower, path.upper)[0] + offsets
     return leg
 
 
@@ -139,13 +139,14 @@ def misses_by(leg: Floats, goal: Floats) -> float:
     radius, out = (coxa, math.hypot(x, y)) if e == 0.0 else (math.hypot(coxa, e), math.hypot(x, y))
     near, far = math.hypot(out - radius, z), math.hypot(out + radius, z)
     longest, shortest = leg[_FEMUR] + leg[_TIBIA], abs(leg[_FEMUR] - leg[_TIBIA])
+    missed: float = 0.0
     if near > longest:
-        return near - longest
-    if far < shortest:
-        return far - shortest
-    if e != 0.0 or near >= shortest or far <= longest:
-        return 0.0
-    return far - longest if far - longest < shortest - near else near - shortest
+        missed = near - longest
+    elif far < shortest:
+        missed = far - shortest
+    elif e == 0.0 and near < shortest and far > longest:  # between the two: too near pointing at it, too far beyond
+        missed = far - longest if far - longest < shortest - near else near - shortest
+    return missed
 
 
 @parallel_jit

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
+from nao_kin.analytic.ranges import middles_and_halves
 from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend, wrapped
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.trigonometry import sine_cosine
@@ -70,9 +71,7 @@ def pack(
     leg[_BACKWARDS], leg[_THIGH : _SHANK + 1] = float(backwards), lengths
     leg[_LATERAL] = lateral if abs(lateral) > 1e-13 * scale else 0.0
     columns = np.arange(6)[::-1] if backwards else np.arange(6)
-    finite = np.isfinite(path.lower) & np.isfinite(path.upper)
-    middles = np.where(finite, 0.5 * (path.lower + path.upper), 0.0)
-    halves = np.where(finite, 0.5 * (path.upper - path.lower), math.pi)
+    middles, halves = middles_and_halves(path.lower, path.upper)
     leg[_SIGNS:_OFFSETS], leg[_OFFSETS:_COLUMNS], leg[_COLUMNS:_MIDDLES] = signs, offsets, columns
     leg[_MIDDLES:_HALVES], leg[_HALVES:] = middles[columns], halves[columns]
     return leg

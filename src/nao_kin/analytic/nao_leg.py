@@ -117,7 +117,8 @@ def _measured(leg: Screws, path: JointPath, *, backwards: bool) -> Geometry | Mi
 def _reversed(leg: Screws) -> Screws:
     """The same joints met from the tip, in tip axes."""
     R, p = leg.tip[:3, :3], leg.tip[:3, 3]
-    return Screws(-leg.axes[::-1] @ R, (leg.points[::-1] - p) @ R, np.linalg.inv(leg.tip))
+    T_tip_base = np.asarray(np.linalg.inv(leg.tip), dtype=np.float64)
+    return Screws(-leg.axes[::-1] @ R, (leg.points[::-1] - p) @ R, T_tip_base)
 
 
 def _meeting_point(axes: Floats, points: Floats) -> tuple[Floats, float]:
