@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     _Rotation: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
     _Angles: TypeAlias = tuple[float, float, float, float, float, float]
 
-__all__ = ["BRANCHES", "pack", "solve", "solve_many"]
+__all__ = ["ANY_YAW", "BRANCHES", "pack", "runs_backwards", "segments", "solve", "solve_many"]
 
 BRANCHES: Final = 8
 
@@ -34,7 +34,7 @@ BRANCHES: Final = 8
 _BEFORE, _BEHIND, _BACKWARDS, _THIGH, _SHANK, _LATERAL = 0, 12, 24, 25, 26, 27
 _SIGNS, _OFFSETS, _COLUMNS, _MIDDLES, _HALVES, _SIZE = 28, 34, 40, 46, 52, 58
 
-_KNEE, _ROLL, _YAW, _PITCH, _ANKLE = 1, 2, 4, 8, 16  # bits of the singularity
+_KNEE, _ROLL, ANY_YAW, _PITCH, _ANKLE = 1, 2, 4, 8, 16  # bits of the singularity
 _MERGED: Final = 1e-7  # relative: where an ankle beside the leg's plane has its turning point, both branches are one
 _ROLLS: Final = 32  # where any ankle roll will do, rolls tried on each side of the middle of its range
 
@@ -77,6 +77,16 @@ def pack(
     return leg
 
 
+def segments(leg: Floats) -> tuple[float, float]:
+    """Thigh and shank [m], of the numbers that `pack` packed."""
+    return float(leg[_THIGH]), float(leg[_SHANK])
+
+
+def runs_backwards(leg: Floats) -> bool:
+    """Whether `pack` packed a chain that runs from foot to hip."""
+    return bool(leg[_BACKWARDS])
+
+
 @parallel_jit
 def solve_many(
     leg: Floats, kind: int, goals: Floats, given: Floats, slack: float, rows: Floats, counts: NDArray[np.int64]
@@ -88,7 +98,11 @@ def solve_many(
 
 @leaf_jit
 def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:  # noqa: ARG001
-    """Every solution of a foot's pose; see `nao_kin.analytic.form.ClosedForm` for the arguments."""
+    """Every solution of a foot's pose; see `nao_kin.analytic.form.ClosedForm` for the arguments.
+
+    `given` is empty, or holds the hip's first angle [rad] for who has decided it: then only solutions with that one are
+    written, and they reach the goal as far as it allows it.
+    """
     a, b, e = leg[_THIGH], leg[_SHANK], leg[_LATERAL]
     R, (rx, ry, rz) = _seen_from_foot(leg, goal)
     scale = a + b
@@ -102,19 +116,20 @@ def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, row
     wz = math.sqrt(max((beside - abs(e)) * (beside + abs(e)), 0.0))
     pitch = math.atan2(wz, rx)
     if wz <= ROUNDING * scale and e == 0.0:
-        return _any_roll(leg, R, t4, pitch, folded, free | _ROLL, rows)
+        return _any_roll(leg, R, given, t4, pitch, folded, free | _ROLL, rows)
     upright = math.atan2(ry * wz - rz * e, rz * wz + ry * e)
     over = math.atan2(-ry * wz - rz * e, -rz * wz + ry * e)
     if wz <= _MERGED * scale:
-        return _at_roll(leg, R, upright, 0, t4, pitch, folded, free | _ANKLE, rows, 0)
-    count = _at_roll(leg, R, upright, 0, t4, pitch, folded, free, rows, 0)
-    return _at_roll(leg, R, over, 1, t4, -pitch, folded, free, rows, count)
+        return _at_roll(leg, R, given, upright, 0, t4, pitch, folded, free | _ANKLE, rows, 0)
+    count = _at_roll(leg, R, given, upright, 0, t4, pitch, folded, free, rows, 0)
+    return _at_roll(leg, R, given, over, 1, t4, -pitch, folded, free, rows, count)
 
 
 @leaf_jit
 def _at_roll(
     leg: Floats,
     R: _Rotation,
+    given: Floats,
     t6: float,
     over: int,
     t4: float,
@@ -129,6 +144,7 @@ def _at_roll(
     Args:
         leg: See `pack`.
         R: Orientation of the foot in the hip's frame.
+        given: The hip's first angle [rad] where it is decided, else empty.
         t6: The ankle roll [rad].
         over: 1 where it turns the foot over.
         t4: The knee, not negative [rad].
@@ -146,29 +162,35 @@ def _at_roll(
     yx, yy, yz = c6 * R[1] - s6 * R[2], c6 * R[4] - s6 * R[5], c6 * R[7] - s6 * R[8]
     zx, zy = s6 * R[1] + c6 * R[2], s6 * R[4] + c6 * R[5]
     c2 = math.hypot(yx, yy)
-    s1, c1, sense = 0.0, 1.0, 0.0
-    if c2 > ROUNDING:
-        s1, c1 = -yx / c2, yy / c2
+    s1, c1, sense, hips = 0.0, 1.0, 0.0, 1
+    if given.shape[0]:
+        s1, c1 = sine_cosine(leg[_SIGNS] * given[0] + leg[_OFFSETS])
+        c2 = c1 * yy - s1 * yx
+    elif c2 > ROUNDING:
+        s1, c1, hips = -yx / c2, yy / c2, 2
     else:
-        free, sense = free | _YAW, math.copysign(1.0, yz)
+        free, sense = free | ANY_YAW, math.copysign(1.0, yz)
     t1, t2 = math.atan2(s1, c1), math.atan2(yz, c2 if sense == 0.0 else 0.0)
     whole_pitch = math.atan2(c1 * zx + s1 * zy, c1 * R[0] + s1 * R[3])  # t3 + t4 + t5
     for knee in range(1 if free & _KNEE else 2):
         bent = t4 if knee == 0 else -t4
         t5 = t45 - (folded if knee == 0 else math.pi - folded)
         t3 = whole_pitch - bent - t5
-        code = (knee if leg[_SIGNS + 3] > 0.0 else 1 - knee) + 2 * over
+        code = (knee if leg[_SIGNS + 3] > 0.0 else 1 - knee) + 2 * over + (4 if c2 < 0.0 else 0)
+        yaw = t1
         if sense != 0.0:
-            t1, t3 = _shared(leg, t1, t3, sense)
-            count = _store(leg, rows, count, (t1, t2, t3, bent, t5, t6), code, free)
-            continue
-        count = _store(leg, rows, count, (t1, t2, t3, bent, t5, t6), code, free)
-        count = _store(leg, rows, count, (t1 + math.pi, math.pi - t2, t3 + math.pi, bent, t5, t6), code + 4, free)
+            yaw, t3 = _shared(leg, t1, t3, sense)
+        count = _store(leg, rows, count, (yaw, t2, t3, bent, t5, t6), code, free)
+        if hips == 2:
+            other = (t1 + math.pi, math.pi - t2, t3 + math.pi, bent, t5, t6)
+            count = _store(leg, rows, count, other, code + 4, free)
     return count
 
 
 @leaf_jit
-def _any_roll(leg: Floats, R: _Rotation, t4: float, t45: float, folded: float, free: int, rows: Floats) -> int:
+def _any_roll(
+    leg: Floats, R: _Rotation, given: Floats, t4: float, t45: float, folded: float, free: int, rows: Floats
+) -> int:
     """Writes the branches of one ankle roll where any would do, the hip being on the axis of the ankle roll.
 
     Of the rolls tried, it is the one nearest to the middle of its range that brings a branch into the limits; if there
@@ -178,7 +200,7 @@ def _any_roll(leg: Floats, R: _Rotation, t4: float, t45: float, folded: float, f
         step = (i + 1) // 2 if i <= 2 * _ROLLS else 0  # 0, then outwards on both sides, then 0 again for want of better
         away = leg[_HALVES + 5] * step / _ROLLS * (1.0 if i % 2 else -1.0)
         t6 = leg[_SIGNS + 5] * (leg[_MIDDLES + 5] + away) + leg[_OFFSETS + 5]
-        count = _at_roll(leg, R, t6, 0, t4, t45, folded, free, rows, 0)
+        count = _at_roll(leg, R, given, t6, 0, t4, t45, folded, free, rows, 0)
         for row in range(count):
             if _inside(leg, rows, row):
                 return count

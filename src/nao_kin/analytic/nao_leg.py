@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-__all__ = ["LABELS", "SINGULARITIES", "recognise"]
+__all__ = ["LABELS", "SINGULARITIES", "meeting_point", "recognise"]
 
 LABELS: Final = tuple(
     f"knee {knee}, ankle {ankle}, hip {hip}"
@@ -70,8 +70,8 @@ def _measured(leg: Screws, path: JointPath, *, backwards: bool) -> Geometry | Mi
     """The leg's numbers, if these screws are a leg from hip to foot."""
     axes, points = leg.axes, leg.points
     y = axes[2]
-    hip, hips_apart = _meeting_point(axes[:3], points[:3])
-    ankle, ankles_apart = _meeting_point(axes[4:], points[4:])
+    hip, hips_apart = meeting_point(axes[:3], points[:3])
+    ankle, ankles_apart = meeting_point(axes[4:], points[4:])
     residual = largest(
         {
             "the first two axes depart from a right angle": float(axes[0] @ axes[1]),
@@ -121,7 +121,7 @@ def _reversed(leg: Screws) -> Screws:
     return Screws(-leg.axes[::-1] @ R, (leg.points[::-1] - p) @ R, T_tip_base)
 
 
-def _meeting_point(axes: Floats, points: Floats) -> tuple[Floats, float]:
+def meeting_point(axes: Floats, points: Floats) -> tuple[Floats, float]:
     """The point nearest to some lines (3,), and how far it is from the farthest of them [m]."""
     across = np.eye(3) - np.einsum("ki,kj->kij", axes, axes)
     point, *_ = np.linalg.lstsq(across.sum(axis=0), np.einsum("kij,kj->i", across, points), rcond=None)

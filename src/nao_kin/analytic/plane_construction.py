@@ -3,7 +3,7 @@
 It is another way to what `nao_kin.analytic.body.body_ik` computes, with vectors in the ground's frame instead of
 angles in the legs' frames, and so a check on it. It differs from the article (steps 1 to 5) in four places:
 
-* the rotation is the product that the article's text names, Rz(γ) Rx(α) Ry(β), where three entries of its matrix are not;
+* the rotation is Rz(γ) Rx(α) Ry(β), the product that the article's text names; three entries of its matrix are not;
 * an arc cosine cannot tell left from right, so the hip's angle is that of directed planes, counted about the body's
   normal; likewise the angle by which the foot is below the hip;
 * g runs from the thigh servo and h to it, so that thigh, shin and g are the sides of one triangle;
