@@ -81,7 +81,7 @@ def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, row
     if forward <= ROUNDING * scale and e == 0.0:
         return _in_plane(leg, leg[_MIDDLES], forward, z, 0, slack, _ANY_COXA, rows, 0)
     t1 = math.atan2(y * forward - x * e, x * forward + y * e)
-    if forward <= _MERGED * scale:
+    if e != 0.0 and forward <= _MERGED * scale:
         return _in_plane(leg, t1, forward, z, 0, slack, _BOTH_COXA, rows, 0)
     count = _in_plane(leg, t1, forward, z, 0, slack, 0, rows, 0)
     t1 = math.atan2(-y * forward - x * e, -x * forward + y * e)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     _Rotation: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
     _Angles: TypeAlias = tuple[float, float, float, float, float, float]
 
-__all__ = ["ANY_YAW", "BRANCHES", "pack", "runs_backwards", "segments", "solve", "solve_many"]
+__all__ = ["ANY_YAW", "BRANCHES", "pack", "runs_backwards", "segments", "solve", "solve_many", "solve_with_yaw"]
 
 BRANCHES: Final = 8
 
@@ -36,7 +36,7 @@ _SIGNS, _OFFSETS, _COLUMNS, _MIDDLES, _HALVES, _SIZE = 28, 34, 40, 46, 52, 58
 
 _KNEE, _ROLL, ANY_YAW, _PITCH, _ANKLE = 1, 2, 4, 8, 16  # bits of the singularity
 _MERGED: Final = 1e-7  # relative: where an ankle beside the leg's plane has its turning point, both branches are one
-_ROLLS: Final = 32  # where any ankle roll will do, rolls tried on each side of the middle of its range
+_ROLLS: Final = 256  # where any ankle roll will do, rolls tried on each side of the middle of its range
 
 
 def pack(
@@ -98,10 +98,16 @@ def solve_many(
 
 @leaf_jit
 def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:  # noqa: ARG001
-    """Every solution of a foot's pose; see `nao_kin.analytic.form.ClosedForm` for the arguments.
+    """Every solution of a foot's pose; see `nao_kin.analytic.form.ClosedForm` for the arguments."""
+    return solve_with_yaw(leg, goal, math.nan, slack, rows)
 
-    `given` is empty, or holds the hip's first angle [rad] for who has decided it: then only solutions with that one are
-    written, and they reach the goal as far as it allows it.
+
+@leaf_jit
+def solve_with_yaw(leg: Floats, goal: Floats, yaw: float, slack: float, rows: Floats) -> int:
+    """`solve`, or for a yaw that is a number the solutions whose first hip joint is at that angle [rad].
+
+    With the yaw decided they reach the goal as far as it allows it: there is a condition on poses that go with it, see
+    `nao_kin.analytic.leg_yaw`.
     """
     a, b, e = leg[_THIGH], leg[_SHANK], leg[_LATERAL]
     R, (rx, ry, rz) = _seen_from_foot(leg, goal)
@@ -116,20 +122,20 @@ def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, row
     wz = math.sqrt(max((beside - abs(e)) * (beside + abs(e)), 0.0))
     pitch = math.atan2(wz, rx)
     if wz <= ROUNDING * scale and e == 0.0:
-        return _any_roll(leg, R, given, t4, pitch, folded, free | _ROLL, rows)
+        return _any_roll(leg, R, yaw, t4, pitch, folded, free | _ROLL, rows)
     upright = math.atan2(ry * wz - rz * e, rz * wz + ry * e)
     over = math.atan2(-ry * wz - rz * e, -rz * wz + ry * e)
-    if wz <= _MERGED * scale:
-        return _at_roll(leg, R, given, upright, 0, t4, pitch, folded, free | _ANKLE, rows, 0)
-    count = _at_roll(leg, R, given, upright, 0, t4, pitch, folded, free, rows, 0)
-    return _at_roll(leg, R, given, over, 1, t4, -pitch, folded, free, rows, count)
+    if e != 0.0 and wz <= _MERGED * scale:
+        return _at_roll(leg, R, yaw, upright, 0, t4, pitch, folded, free | _ANKLE, rows, 0)
+    count = _at_roll(leg, R, yaw, upright, 0, t4, pitch, folded, free, rows, 0)
+    return _at_roll(leg, R, yaw, over, 1, t4, -pitch, folded, free, rows, count)
 
 
 @leaf_jit
 def _at_roll(
     leg: Floats,
     R: _Rotation,
-    given: Floats,
+    given_yaw: float,
     t6: float,
     over: int,
     t4: float,
@@ -144,7 +150,7 @@ def _at_roll(
     Args:
         leg: See `pack`.
         R: Orientation of the foot in the hip's frame.
-        given: The hip's first angle [rad] where it is decided, else empty.
+        given_yaw: The first hip joint [rad] where it is decided, else NaN.
         t6: The ankle roll [rad].
         over: 1 where it turns the foot over.
         t4: The knee, not negative [rad].
@@ -163,8 +169,8 @@ def _at_roll(
     zx, zy = s6 * R[1] + c6 * R[2], s6 * R[4] + c6 * R[5]
     c2 = math.hypot(yx, yy)
     s1, c1, sense, hips = 0.0, 1.0, 0.0, 1
-    if given.shape[0]:
-        s1, c1 = sine_cosine(leg[_SIGNS] * given[0] + leg[_OFFSETS])
+    if not math.isnan(given_yaw):
+        s1, c1 = sine_cosine(leg[_SIGNS] * given_yaw + leg[_OFFSETS])
         c2 = c1 * yy - s1 * yx
     elif c2 > ROUNDING:
         s1, c1, hips = -yx / c2, yy / c2, 2
@@ -189,7 +195,7 @@ def _at_roll(
 
 @leaf_jit
 def _any_roll(
-    leg: Floats, R: _Rotation, given: Floats, t4: float, t45: float, folded: float, free: int, rows: Floats
+    leg: Floats, R: _Rotation, yaw: float, t4: float, t45: float, folded: float, free: int, rows: Floats
 ) -> int:
     """Writes the branches of one ankle roll where any would do, the hip being on the axis of the ankle roll.
 
@@ -200,7 +206,7 @@ def _any_roll(
         step = (i + 1) // 2 if i <= 2 * _ROLLS else 0  # 0, then outwards on both sides, then 0 again for want of better
         away = leg[_HALVES + 5] * step / _ROLLS * (1.0 if i % 2 else -1.0)
         t6 = leg[_SIGNS + 5] * (leg[_MIDDLES + 5] + away) + leg[_OFFSETS + 5]
-        count = _at_roll(leg, R, given, t6, 0, t4, t45, folded, free, rows, 0)
+        count = _at_roll(leg, R, yaw, t6, 0, t4, t45, folded, free, rows, 0)
         for row in range(count):
             if _inside(leg, rows, row):
                 return count

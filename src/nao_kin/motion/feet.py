@@ -25,10 +25,11 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.analytic.form import Mismatch
-from nao_kin.analytic.leg_kernel import ANY_YAW, BRANCHES, solve
+from nao_kin.analytic.leg_kernel import ANY_YAW, BRANCHES, solve_with_yaw
 from nao_kin.analytic.leg_yaw import Hinges, hinges, nearest_orientation
 from nao_kin.analytic.nao_leg import LABELS, recognise
-from nao_kin.chain import into_limits, neutral, outside_limits
+from nao_kin.arrays import vector
+from nao_kin.chain import into_limits, outside_limits
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.target import Target
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FeetResult", "both_feet"]
 
-_ANY: Final = np.empty(0)  # no angle given
 _BESIDE: Final = 1e-9  # [m] an ankle this near to the plane of the thigh is in it
 _ANGLE_RESOLUTION: Final = 1e-10  # [rad] to which the shared angle is found
 _SCAN: Final = 65  # angles tried between the two wanted ones where the best one brings a joint outside its range
@@ -180,14 +180,15 @@ class _Foot:
         if abs(points.beside) > _BESIDE:
             got = f"one {abs(points.beside):.3g} m beside it in {chain.name}"
             raise InvalidInputError(f"{side} leg", "an ankle in the plane of the thigh", got)
-        names = chain.joint_names
-        start = neutral(chain) if near is None else np.array([near.get(name, 0.0) for name in names], dtype=np.float64)
+        start = np.zeros(6)
+        if near is not None:
+            start = vector([near.get(name, 0.0) for name in chain.joint_names], f"near, {side} leg", 6)
         return cls(Problem(chain, Target.pose(T), tolerances), geometry.parameters, points, into_limits(chain, start))
 
-    def solutions(self, T_base_tip: Floats, given: Floats, slack: float) -> Floats:
+    def solutions(self, T_base_tip: Floats, yaw: float, slack: float) -> Floats:
         """Rows of the kernel, see `nao_kin.analytic.form.ClosedForm`."""
         rows = np.empty((BRANCHES, 8))
-        count = solve(self.parameters, 0, T_base_tip, given, slack, rows)
+        count = solve_with_yaw(self.parameters, T_base_tip, yaw, slack, rows)
         return rows[:count]
 
     def chosen(self, rows: Floats) -> Floats:
@@ -207,7 +208,7 @@ class _Foot:
         T, bones = self.problem.target.goal.copy(), self.hinges
         x = pin.exp3(shared * bones.yaw_axis) @ bones.roll_axis
         T[:3, :3] = nearest_orientation(x, bones.hip, bones.ankle, bones.foot_axis, T)
-        row = self.chosen(self.solutions(T, np.array([shared]), math.inf))
+        row = self.chosen(self.solutions(T, shared, math.inf))
         row[0] = shared  # as it was given, to the last bit, whatever the leg's own offset made of it
         return row
 
@@ -225,7 +226,7 @@ class _Foot:
         """The joints of a row, measured against the wanted pose."""
         goal, bones = self.problem.target.goal, self.hinges
         run = Run(row[:6].copy(), Status.STALLED, branch=LABELS[int(row[6])])
-        if not len(self.solutions(goal, _ANY, 0.0)):  # not even with a motor of its own
+        if not len(self.solutions(goal, math.nan, 0.0)):  # not even with a motor of its own
             distance = float(np.linalg.norm(goal[:3, :3] @ bones.ankle + goal[:3, 3] - bones.hip))
             run.ended = Status.OUT_OF_REACH
             run.misses_by = max(distance - bones.thigh - bones.shank, abs(bones.thigh - bones.shank) - distance)
@@ -234,7 +235,7 @@ class _Foot:
 
 def _wanted(feet: tuple[_Foot, _Foot]) -> tuple[float, float]:
     """The angle of the shared joint that each foot wants [rad]; a foot that takes any wants the other one's."""
-    left, right = (foot.chosen(foot.solutions(foot.problem.target.goal, _ANY, math.inf)) for foot in feet)
+    left, right = (foot.chosen(foot.solutions(foot.problem.target.goal, math.nan, math.inf)) for foot in feet)
     free = [bool(int(row[7]) & ANY_YAW) for row in (left, right)]
     return float(right[0] if free[0] else left[0]), float(left[0] if free[1] and not free[0] else right[0])
 
