@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["JOINTS", "LABELS", "SHORTEST", "SINGULARITIES", "recognise"]
 
 # Where the parameters begin: rotation and origin of the shoulder frame in the base, lengths, what to add to q for θ,
-# rotation of the tip in the hand frame and the tip seen from the elbow point, number of joints.
+# rotation of the tip in the hand frame and the tip seen from the elbow point, number of joints, limits of q. Limits
+# decide nothing but which solution stands for a continuum.
 BASE: Final = 0
 SHOULDER: Final = 9
 LENGTH: Final = 12
@@ -39,7 +40,9 @@ SHIFTS: Final = 14
 HAND: Final = 19
 TIP: Final = 28
 JOINTS: Final = 31
-_SIZE: Final = 32
+LOWER: Final = 32
+UPPER: Final = 37
+_SIZE: Final = 42
 
 SHORTEST: Final = 1e-6
 """Below this distance of shoulder and elbow [m] there is no upper arm."""
@@ -88,7 +91,9 @@ def recognise(path: JointPath, joints: int) -> Geometry | Mismatch:
         return residual
     if (reach := float(np.linalg.norm(elbow - shoulder))) < SHORTEST:
         return Mismatch(f"shoulder and elbow are {reach:.3g} m apart")
-    return Geometry(_parameters(w, shoulder, elbow, at_zero.tip, joints), residual)
+    parameters = _parameters(w, shoulder, elbow, at_zero.tip, joints)
+    parameters[LOWER : LOWER + joints], parameters[UPPER : UPPER + joints] = path.lower, path.upper
+    return Geometry(parameters, residual)
 
 
 def _parameters(w: Floats, shoulder: Floats, elbow: Floats, tip: Floats, joints: int) -> Floats:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from nao_kin.analytic.nao_arm import JOINTS, LENGTH, OFFSET, SHIFTS
-from nao_kin.kernels.compiling import leaf_jit
+from nao_kin.analytic.nao_arm import JOINTS, LENGTH, LOWER, OFFSET, SHIFTS, UPPER
+from nao_kin.kernels.compiling import jit, leaf_jit
 from nao_kin.kernels.rotation import Nine, Three, turned_y, turned_z, wrapped
 
 if TYPE_CHECKING:
@@ -23,11 +23,14 @@ __all__ = [
     "ANY_TURN",
     "NOTHING",
     "REGULAR",
+    "TRIES",
     "Upper",
+    "any_inside",
     "before_elbow",
     "from_elbow_point",
     "shoulder_pitch",
     "shoulder_roll",
+    "trial",
     "write",
 ]
 
@@ -45,6 +48,9 @@ ANY_TURN: Final = 6
 
 NOTHING: Final = 1e-13
 """Sines of angles, and lengths over the upper arm's, below which rounding has eaten the angle: there is a continuum."""
+
+TRIES: Final = 33
+"""Angles of a free joint that are tried for a representative within limits."""
 
 _NEARLY_NOTHING: Final = 1e-3
 """Below this the shoulder pitch of four joints is better known from the orientation than from the elbow's place."""
@@ -89,7 +95,13 @@ def from_elbow_point(parameters: Floats, e: Three, R: Nine, first: int, count: i
         c2, s2 = shoulder_roll(parameters, across if shoulder == 0 else -across, e[1])
         if parameters[JOINTS] == 5.0:
             c1, s1, singular = shoulder_pitch(parameters, e, shoulder)
-            count = _wrist(parameters, R, (c1, s1, c2, s2), first + 2 * shoulder, singular, count, rows)
+            begin, label = count, first + 2 * shoulder
+            count = _wrist(parameters, R, (c1, s1, c2, s2), label, singular, begin, rows)
+            k = 1
+            while singular != REGULAR and k < TRIES and not any_inside(parameters, rows, begin, count):
+                c1, s1 = math.cos(trial(k)), math.sin(trial(k))
+                count = _wrist(parameters, R, (c1, s1, c2, s2), label, singular, begin, rows)
+                k += 1
         else:
             count = _four_joints(parameters, R, e, c2, s2, shoulder, first + 2 * shoulder, count, rows)
     return count
@@ -120,6 +132,25 @@ def _wrist(parameters: Floats, R: Nine, upper: Upper, label: int, singular: int,
         wrist = (math.atan2(s3, c3), math.atan2(s4, x[0]), t5)
         count = write(parameters, upper, wrist, label + elbow, singular, count, rows)
     return count
+
+
+@jit
+def trial(k: int) -> float:
+    """The k-th angle to try for a joint that is free: 0, then ever farther to both sides, up to ±π [rad]."""
+    step = 2.0 * math.pi / (TRIES - 1)
+    return step * ((k + 1) // 2) * (1.0 if k % 2 == 1 else -1.0)
+
+
+@leaf_jit
+def any_inside(parameters: Floats, rows: Floats, begin: int, end: int) -> bool:
+    """Whether one of the rows begin ≤ row < end is within the arm's limits."""
+    for i in range(begin, end):
+        inside = True
+        for j in range(int(parameters[JOINTS])):
+            inside = inside and parameters[LOWER + j] <= rows[i, j] <= parameters[UPPER + j]
+        if inside:
+            return True
+    return False
 
 
 @leaf_jit

@@ -13,10 +13,13 @@ from nao_kin.analytic.nao_arm_joints import (
     ANY_TURN,
     NOTHING,
     REGULAR,
+    TRIES,
+    any_inside,
     before_elbow,
     from_elbow_point,
     shoulder_pitch,
     shoulder_roll,
+    trial,
     write,
 )
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
@@ -182,9 +185,8 @@ def _pointing(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> i
     if math.hypot(p, q) <= NOTHING * rho * rho:
         if abs(math.sqrt(max(0.0, rho * rho + 2.0 * c)) - rho) > slack:
             return 0
-        free = ANY_TURN if parameters[JOINTS] == 5.0 else REGULAR
         e = (f[0] - beside[0], f[1] - beside[1], f[2] - beside[2])
-        return _aim(parameters, e, a, b, 0, free, 0, rows)
+        return _aim_along_hand(parameters, e, a, b, rows)
     roots, cosine, sine, other_cosine, other_sine = circle_roots(p, q, c, slack * rho)
     count = 0
     for turn in range(roots):
@@ -200,8 +202,23 @@ def _pointing(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> i
             R = _turned_to(a, b, cosine, sine)
             count = from_elbow_point(parameters, e, R, 4 + 4 * turn, count, rows)
         else:
-            count = _aim(parameters, e, a, b, 4 + 4 * turn, REGULAR, count, rows)
+            count = _aim(parameters, e, a, b, 0.0, 4 + 4 * turn, REGULAR, count, rows)
     return count
+
+
+@leaf_jit
+def _aim_along_hand(parameters: Floats, e: Three, a: Three, b: Three, rows: Floats) -> int:
+    """Solutions where the pointing axis passes through the elbow point, so that a turn about it moves nothing else.
+
+    Of five joints one is free then: the first wrist yaw that is within limits with all others stands for the rest.
+    """
+    if parameters[JOINTS] != 5.0:
+        return _aim(parameters, e, a, b, 0.0, 0, REGULAR, 0, rows)
+    for k in range(TRIES):
+        count = _aim(parameters, e, a, b, trial(k), 0, ANY_TURN, 0, rows)
+        if any_inside(parameters, rows, 0, count):
+            return count
+    return _aim(parameters, e, a, b, 0.0, 0, ANY_TURN, 0, rows)
 
 
 @leaf_jit
@@ -214,8 +231,12 @@ def _turned_to(a: Three, b: Three, cosine: float, sine: float) -> Nine:
 
 
 @leaf_jit
-def _aim(parameters: Floats, e: Three, a: Three, b: Three, first: int, singular: int, count: int, rows: Floats) -> int:
-    """Solutions with the elbow point at e, the hand's axis a along b, and no wrist yaw: Rx(θ3) Rz(θ4) a = m."""
+def _aim(
+    parameters: Floats, e: Three, a: Three, b: Three, t5: float, first: int, singular: int, count: int, rows: Floats
+) -> int:
+    """Solutions with the elbow point at e, the hand's axis a along b, and θ5 known: Rx(θ3) Rz(θ4) Rx(θ5) a = m."""
+    c5, s5 = math.cos(t5), math.sin(t5)
+    a = (a[0], c5 * a[1] - s5 * a[2], s5 * a[1] + c5 * a[2])
     across = math.hypot(e[0], e[2])
     for shoulder in range(2):
         c2, s2 = shoulder_roll(parameters, across if shoulder == 0 else -across, e[1])
@@ -232,7 +253,7 @@ def _aim(parameters: Floats, e: Three, a: Three, b: Three, first: int, singular:
             y, z = s4 * a[0] + c4 * a[1], a[2]
             t3 = math.atan2(m[2] * y - m[1] * z, m[1] * y + m[2] * z)
             count = write(
-                parameters, upper, (t3, math.atan2(s4, c4), 0.0), first + 2 * shoulder + elbow, free, count, rows
+                parameters, upper, (t3, math.atan2(s4, c4), t5), first + 2 * shoulder + elbow, free, count, rows
             )
     return count
 
