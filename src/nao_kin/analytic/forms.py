@@ -5,7 +5,16 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from nao_kin.analytic import nao_arm, nao_arm_kernel, nao_head, nao_head_kernel
+from nao_kin.analytic import (
+    hexapod,
+    hexapod_kernel,
+    leg_kernel,
+    nao_arm,
+    nao_arm_kernel,
+    nao_head,
+    nao_head_kernel,
+    nao_leg,
+)
 from nao_kin.analytic.form import ClosedForm, Request
 
 __all__ = ["FORMS"]
@@ -49,6 +58,30 @@ FORMS: Final = (
         recognise=partial(nao_arm.recognise, joints=5),
         solve=nao_arm_kernel.solve,
         solve_many=nao_arm_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="nao_leg",
+        title="NAO leg of six joints, from torso to foot or from foot to torso",
+        source="Kofinas 2012, section 4, for the problem; derived in nao_kin.analytic.nao_leg",
+        joints=6,
+        requests={"pose": Request(leg_kernel.BRANCHES)},
+        labels=nao_leg.LABELS,
+        singularities=nao_leg.SINGULARITIES,
+        recognise=nao_leg.recognise,
+        solve=leg_kernel.solve,
+        solve_many=leg_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="hexapod_leg",
+        title="hexapod leg: coxa, femur and tibia",
+        source="hexapod article, steps 3 to 5",
+        joints=3,
+        requests={"position": Request(hexapod_kernel.BRANCHES)},
+        labels=hexapod.LABELS,
+        singularities=hexapod.SINGULARITIES,
+        recognise=hexapod.recognise,
+        solve=hexapod_kernel.solve,
+        solve_many=hexapod_kernel.solve_many,
     ),
 )
 """In the order in which they are tried."""

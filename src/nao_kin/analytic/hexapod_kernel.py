@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.analytic.ranges import middles_and_halves
-from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend, wrapped
+from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
+from nao_kin.kernels.rotation import wrapped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

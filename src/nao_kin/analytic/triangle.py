@@ -1,15 +1,13 @@
-"""What closed forms share: two links and the distance they span, and angles brought into one turn."""
+"""Two links and the distance they span, which most closed forms come down to."""
 
 from __future__ import annotations
 
 import math
 from typing import Final
 
-import numpy as np
-
 from nao_kin.kernels.compiling import leaf_jit
 
-__all__ = ["NONE", "ONE", "ROUNDING", "TWO", "bend", "wrapped"]
+__all__ = ["NONE", "ONE", "ROUNDING", "TWO", "bend"]
 
 NONE, ONE, TWO = 0, 1, 2
 """How many bends span a distance."""
@@ -47,10 +45,3 @@ def bend(a: float, b: float, distance: float, slack: float) -> tuple[int, float,
         return ONE, math.pi, 0.0, -1.0
     t = 2.0 * math.atan2(math.sqrt(to_straight), math.sqrt(from_folded))
     return TWO, t, math.sqrt(to_straight * from_folded) / (2.0 * a * b), (from_folded - to_straight) / (4.0 * a * b)
-
-
-@leaf_jit
-def wrapped(angle: float) -> float:
-    """The angle in (−π, π]."""
-    turned: float = angle - 2.0 * math.pi * np.ceil(angle / (2.0 * math.pi) - 0.5)
-    return turned
