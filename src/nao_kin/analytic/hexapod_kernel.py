@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.analytic.ranges import middles_and_halves
-from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend
+from nao_kin.analytic.triangle import FAR, NONE, ONE, ROUNDING, bend
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import wrapped
 
@@ -75,7 +75,7 @@ def solve(leg: Floats, kind: int, goal: Floats, given: Floats, slack: float, row
     e, scale = leg[_LATERAL], leg[_COXA] + leg[_FEMUR] + leg[_TIBIA]
     slack = max(slack, ROUNDING * scale)
     out = math.hypot(x, y)
-    if not out >= abs(e) - slack:
+    if not abs(e) - slack <= out < FAR:
         return 0
     # The foot's distance from the coxa axis within the leg's plane; the other sign reaches over the body.
     forward = math.sqrt(max((out - abs(e)) * (out + abs(e)), 0.0))

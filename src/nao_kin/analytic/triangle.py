@@ -7,7 +7,7 @@ from typing import Final
 
 from nao_kin.kernels.compiling import leaf_jit
 
-__all__ = ["NONE", "ONE", "ROUNDING", "TWO", "bend"]
+__all__ = ["FAR", "NONE", "ONE", "ROUNDING", "TWO", "bend"]
 
 NONE, ONE, TWO = 0, 1, 2
 """How many bends span a distance."""
@@ -15,6 +15,9 @@ NONE, ONE, TWO = 0, 1, 2
 ROUNDING: Final = 1e-12
 """Relative to the size of an arm: a direction whose length is below this decides nothing, and a goal that is beyond the
 border of the reachable set by less is on it."""
+
+FAR: Final = 1e100
+"""Nothing is solved for goals beyond this distance [m], whose squares overflow; not even by the border's solution."""
 
 _SAME: Final = 1e-14  # relative: two links this near to their full length have one bend; rounding has eaten the other
 
@@ -34,7 +37,7 @@ def bend(a: float, b: float, distance: float, slack: float) -> tuple[int, float,
         one, t being exactly 0 or π.
     """
     longest, shortest = a + b, abs(a - b)
-    if not (shortest - slack <= distance <= longest + slack):
+    if not (shortest - slack <= distance <= longest + slack and distance < FAR):
         return NONE, 0.0, 0.0, 1.0
     # The law of cosines by half angles, which keep their digits near the straight and the folded arm.
     to_straight = (longest - distance) * (longest + distance)
