@@ -23,7 +23,7 @@ HIPS = np.vstack([HIPS, HIPS * (-1.0, 1.0, 1.0)])  # x to the right, y ahead [m]
 WALKER = Walker(HIPS, HIP, THIGH, SHIN, front=0, rear=2)
 
 
-def round_legs(limit: float = math.inf) -> dict[str, Chain]:
+def round_legs(limit: float = math.inf, knee: tuple[float, float] | None = None) -> dict[str, Chain]:
     """The round walker: hip counted from straight ahead, thigh from level, knee by the angle of thigh and shin."""
     legs: dict[str, Chain] = {}
     for name, hip in zip(LEGS, HIPS, strict=True):
@@ -34,6 +34,8 @@ def round_legs(limit: float = math.inf) -> dict[str, Chain]:
         ]
         if limit < math.inf:
             rows = [row | {"lower": -limit, "upper": limit} for row in rows]
+        if knee is not None:
+            rows[2] |= {"lower": knee[0], "upper": knee[1]}
         legs[name] = nk.DHChain.from_table(rows, "standard", base=translation(*hip), name=name, base_name="body")
     return legs
 
