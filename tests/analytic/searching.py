@@ -65,7 +65,7 @@ def wrapped(angles: Floats) -> Floats:
 
 
 def newton(
-    residual: Callable[[Floats], Floats], jacobian: Callable[[Floats], Floats], starts: Floats, steps: int = 60
+    residual: Callable[[Floats], Floats], jacobian: Callable[[Floats], Floats], starts: Floats, steps: int = 50
 ) -> Floats:
     """Roots that Levenberg's method finds from many starts (N, n): an oracle that knows no closed form.
 

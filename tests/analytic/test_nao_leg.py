@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+import nao_kin as nk
 from nao_kin.analytic import leg_kernel, nao_leg
 from nao_kin.analytic.form import Geometry, Mismatch
-from nao_kin.chain import Chain, random_configurations
+from nao_kin.chain import Chain, in_limits, random_configurations
 from nao_kin.kernels.forward import jacobians, poses
 from nao_kin.se3 import from_xyz_rpy
 from tests.analytic.searching import POSE, Branches, branches, moved, newton, random_poses, replace_path, wrapped
@@ -77,7 +78,7 @@ def test_the_leg_of_another_humanoid_is_solved_too(rng: np.random.Generator) -> 
 def test_newton_from_everywhere_finds_no_other_solution(names: tuple[str, str, str], rng: np.random.Generator) -> None:
     path = leg(*names).joint_path
     seen = 0
-    for q in rng.uniform(-2.5, 2.5, (6, 6)):
+    for q in rng.uniform(-2.5, 2.5, (5, 6)):
         goal = poses(path, q[None, :])
         found = solved(path, goal)
 
@@ -92,11 +93,11 @@ def test_newton_from_everywhere_finds_no_other_solution(names: tuple[str, str, s
             J = jacobians(path, Q)
             return np.concatenate([10.0 * J[:, :3], J[:, 3:], np.zeros((len(Q), 1, 6))], axis=1)
 
-        roots = newton(residual, jacobian, rng.uniform(-np.pi, np.pi, (400, 6)))
+        roots = newton(residual, jacobian, rng.uniform(-np.pi, np.pi, (300, 6)))
         distance = np.abs(wrapped(roots[:, None] - found.q[0][None])).max(axis=2)
         assert distance.min(axis=1).max() < 1e-6
         seen += len(set(distance.argmin(axis=1).tolist()))
-    assert seen >= 6 * 7  # the search is worth something: it finds nearly all of the eight
+    assert seen >= 5 * 7  # the search is worth something: it finds nearly all of the eight
 
 
 def test_the_right_leg_mirrors_the_left_one(rng: np.random.Generator) -> None:
@@ -127,10 +128,7 @@ def test_base_tool_axis_signs_and_offsets_may_be_anything(rng: np.random.Generat
 
 
 def test_an_ankle_beside_the_plane_of_the_thigh_is_solved(rng: np.random.Generator) -> None:
-    path = leg().joint_path
-    translations = path.translations.copy()
-    translations[4] += 0.02 * np.array([0.0, 0.0, 1.0])  # along the pitch axes, which are z of their own frames
-    beside = replace_path(path, translations=translations)
+    beside = ankle_beside()
     Q = rng.uniform(-3.0, 3.0, (3000, 6))
     goals = poses(beside, Q)
     found = solved(beside, goals)
@@ -159,6 +157,34 @@ def test_a_leg_that_is_not_one_is_refused_with_what_was_measured(joint: int, shi
     told = nao_leg.recognise(replace_path(path, rotations=rotations))
     assert isinstance(told, Mismatch)
     assert "parallel" in told.reason
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_table_of_a_document_is_the_same_leg(side: str, rng: np.random.Generator) -> None:
+    table = nk.document_chain(f"kofinas_{side}_leg")
+    Q = rng.uniform(-3.0, 3.0, (1000, 6))
+    found = solved(table.joint_path, table.poses(Q))
+    assert found.distance(Q)[smallest_singular_values(table.joint_path, Q) > 1e-6].max() < 1e-9
+    assert found.errors(table.joint_path, table.poses(Q)).max() < 1e-13
+
+
+def test_every_solution_is_judged_in_and_out_of_limits(rng: np.random.Generator) -> None:
+    chain = leg()
+    for q in random_configurations(chain, 20, rng):
+        results = nk.solve_all(chain, chain.pose(q))
+        assert len(results) == 8
+        assert {result.branch for result in results} == set(nao_leg.LABELS)
+        assert results[0].solved
+        for result in results:
+            assert result.status in (nk.Status.SOLVED, nk.Status.OUTSIDE_LIMITS)
+            assert (result.status is nk.Status.SOLVED) == in_limits(chain, result.q, 1e-9)
+            assert np.abs(chain.pose(result.q).homogeneous - chain.pose(q).homogeneous).max() < 1e-13
+        assert nk.nearest(results, q).q == pytest.approx(q, abs=1e-8)
+    far = chain.pose(np.zeros(6))
+    far.translation = far.translation - np.array([0.0, 0.0, 0.01])
+    unreached = nk.solve_all(chain, far)
+    assert not unreached
+    assert "misses by 0.01 m" in unreached.reason
 
 
 def test_other_chains_are_no_legs() -> None:
@@ -264,3 +290,27 @@ def test_no_goal_however_degenerate_gives_a_number_that_is_none(rng: np.random.G
     with np.errstate(all="ignore"):
         for slack in (0.0, 1e-6, math.inf):
             solved(path, goals, slack)  # asserts that what is written is finite
+
+
+def test_an_ankle_beside_the_plane_has_a_turning_point(rng: np.random.Generator) -> None:
+    """Where the hip is as far beside the foot as the ankle is beside the thigh, both ankle branches meet."""
+    beside = ankle_beside()
+    for distance in (1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 0.0):
+        Q = singular("ankle", distance, rng, 200)
+        goals = poses(beside, Q)
+        found = solved(beside, goals)
+        assert (found.counts >= 4).all()
+        assert found.errors(beside, goals).max() < 1e-11
+        regular = smallest_singular_values(beside, Q) > 1e-6
+        assert found.distance(Q)[regular].max(initial=0.0) < 1e-8
+    assert (found.counts == 4).all()
+    met = np.array(["both ankle branches in one" in words for words in nao_leg.SINGULARITIES])
+    assert met[found.singularity[found.exists]].all()
+
+
+def ankle_beside() -> JointPath:
+    """The left leg with its ankle 2 cm beside the plane of the thigh."""
+    path = leg().joint_path
+    translations = path.translations.copy()
+    translations[4] += 0.02 * np.array([0.0, 0.0, 1.0])  # along the pitch axes, which are z of their own frames
+    return replace_path(path, translations=translations)

@@ -89,6 +89,19 @@ def test_positions_are_kept_and_no_motion_of_the_joints_does_better(
     assert compared >= 20
 
 
+def test_a_leg_that_is_nearly_straight_keeps_its_position_too(rng: np.random.Generator) -> None:
+    """Its ankle cannot go farther from the hip, which leaves fewer orientations to choose from."""
+    left, right = legs()
+    stretched = 0
+    for q_left, q_right in zip(bent(left, rng, 60), bent(right, rng, 60), strict=True):
+        q_left[3], q_right[3] = rng.uniform(0.0, 0.3, 2)
+        q_left, q_right = into_limits(left, q_left), into_limits(right, q_right)
+        result = both_feet(left, right, left.pose(q_left), right.pose(q_right))
+        assert max(result.position_errors) < 1e-12
+        stretched += min(abs(result.left.q[3]), abs(result.right.q[3])) < 1e-9
+    assert stretched > 5
+
+
 def test_the_foot_that_counts_alone_is_met(rng: np.random.Generator) -> None:
     left, right = legs()
     for q_left, q_right in zip(bent(left, rng, 10), bent(right, rng, 10), strict=True):

@@ -5,7 +5,8 @@ axis x, across the line from hip H to ankle A, and across the ankle's roll axis 
 
     f = x · ((A − H) × w) = 0
 
-Positions being kept, that is one equation for the three angles of the orientation.
+Positions being kept, that is one equation for the three angles of the orientation; and since the ankle is not where the
+tip is, the leg must be long enough for the orientation.
 """
 
 from __future__ import annotations
@@ -79,17 +80,21 @@ def hinges(path: JointPath) -> Hinges | Mismatch:
 
 
 @jit
-def nearest_orientation(x: Floats, hip: Floats, ankle: Floats, foot_axis: Floats, goal: Floats) -> Floats:
+def nearest_orientation(
+    x: Floats, hip: Floats, ankle: Floats, foot_axis: Floats, longest: float, goal: Floats
+) -> Floats:
     """The orientation (3, 3) nearest to a wanted one that goes with an angle of the hip's first joint.
 
-    It makes the angle |ω| of R = exp(ω) R_wanted least where f(R) = 0, the position being kept: from step to step the
-    least ω on the linearised f (sequential quadratic programming with the metric of SO(3) as its Hessian).
+    It makes the angle |ω| of R = exp(ω) R_wanted least where f(R) = 0 and |A − H| ≤ longest, the position being kept:
+    from step to step the least ω on the linearised conditions (sequential quadratic programming with the metric of
+    SO(3) as its Hessian).
 
     Args:
         x: The hip's roll axis at that angle, in base axes (3,).
         hip: See `Hinges` (3,) [m].
         ankle: See `Hinges` (3,) [m].
         foot_axis: See `Hinges` (3,).
+        longest: How far the ankle may be from the hip [m].
         goal: The wanted pose of the tip (4, 4).
     """
     wanted, from_hip = goal[:3, :3].copy(), goal[:3, 3] - hip
@@ -102,7 +107,16 @@ def nearest_orientation(x: Floats, hip: Floats, ankle: Floats, foot_axis: Floats
         squared = np.dot(gradient, gradient)
         if squared < 1e-24:  # to first order, any orientation goes with it
             break
-        nearer = gradient * ((np.dot(gradient, omega) - f) / squared)
+        on_f = np.dot(gradient, omega) - f
+        nearer = gradient * (on_f / squared)
+        too_long, lengthens = np.dot(leg, leg) - longest * longest, 2.0 * np.cross(arm, leg)
+        if too_long + np.dot(lengthens, nearer - omega) > 0.0:  # then the least ω is where the leg is stretched
+            across, along = np.dot(gradient, lengthens), np.dot(lengthens, lengthens)
+            area = squared * along - across * across
+            if area > 1e-12 * squared * along:
+                on_length = np.dot(lengthens, omega) - too_long
+                nearer = gradient * ((on_f * along - on_length * across) / area)
+                nearer += lengthens * ((on_length * squared - on_f * across) / area)
         R = _turn(nearer - omega) @ R
         moved = np.abs(nearer - omega).max()
         omega = _turn_between(wanted, R)

@@ -7,7 +7,8 @@ two, and each foot gives up a little of its orientation:
 1. Each leg is solved in closed form (`nao_kin.analytic.nao_leg`), which says the shared angle that its foot wants.
 2. For any angle between these two, each foot keeps its position and takes the orientation nearest to the wanted one
    that goes with the angle. A foot's pose goes with an angle where the hip's roll axis, the line from hip to ankle and
-   the ankle's roll axis lie in one plane, which is one equation for the three angles of the orientation.
+   the ankle's roll axis lie in one plane, which is one equation for the three angles of the orientation, and where the
+   leg is long enough (`nao_kin.analytic.leg_yaw`).
 3. The angle is the one at which the weighted sum of the two squared errors is least. Where a joint would be outside
    its range there, it is the best of those at which none is.
 
@@ -18,7 +19,7 @@ with equal weights; here the ratio follows from the errors.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, NoReturn
 
 import numpy as np
@@ -119,9 +120,10 @@ def both_feet(
 ) -> FeetResult:
     """Joints of both legs for two wanted feet, the first joints of the two legs turning by the same angle.
 
-    Positions are kept exactly where the legs are long enough, and orientations as well as one motor allows; what is
-    left is measured by forward kinematics and reported. The rule is that of the module. An error of a foot is its angle
-    [rad], and where it cannot keep its position, also its distance over the length of the leg.
+    Positions are kept and orientations approached as well as one motor allows; what is left is measured by forward
+    kinematics and reported. The rule is that of the module. An error of a foot is its angle [rad], and where no
+    orientation nearby lets it keep its position, or its wanted pose is out of reach, also its distance over the length
+    of the leg.
 
     Args:
         left: Chain of six joints from the torso to the left foot.
@@ -164,12 +166,14 @@ class _Foot:
         parameters: The leg's numbers for the kernel.
         hinges: Its hip and ankle.
         near: Joints to stay near to (6,) [rad].
+        longest: How far the ankle may be from the hip [m]; infinitely far if the wanted pose is out of reach anyway.
     """
 
     problem: Problem
     parameters: Floats
     hinges: Hinges
     near: Floats
+    longest: float = math.inf
 
     @classmethod
     def of(cls, side: str, chain: Chain, T: pin.SE3, near: Mapping[str, float] | None, tolerances: Tolerances) -> _Foot:
@@ -183,7 +187,10 @@ class _Foot:
         start = np.zeros(6)
         if near is not None:
             start = vector([near.get(name, 0.0) for name in chain.joint_names], f"near, {side} leg", 6)
-        return cls(Problem(chain, Target.pose(T), tolerances), geometry.parameters, points, into_limits(chain, start))
+        problem = Problem(chain, Target.pose(T), tolerances)
+        foot = cls(problem, geometry.parameters, points, into_limits(chain, start))
+        in_reach = len(foot.solutions(problem.target.goal, math.nan, 0.0)) > 0
+        return replace(foot, longest=points.thigh + points.shank) if in_reach else foot
 
     def solutions(self, T_base_tip: Floats, yaw: float, slack: float) -> Floats:
         """Rows of the kernel, see `nao_kin.analytic.form.ClosedForm`."""
@@ -207,7 +214,7 @@ class _Foot:
         """The row of the leg's joints with its first one at an angle."""
         T, bones = self.problem.target.goal.copy(), self.hinges
         x = pin.exp3(shared * bones.yaw_axis) @ bones.roll_axis
-        T[:3, :3] = nearest_orientation(x, bones.hip, bones.ankle, bones.foot_axis, T)
+        T[:3, :3] = nearest_orientation(x, bones.hip, bones.ankle, bones.foot_axis, self.longest, T)
         row = self.chosen(self.solutions(T, shared, math.inf))
         row[0] = shared  # as it was given, to the last bit, whatever the leg's own offset made of it
         return row
@@ -226,7 +233,7 @@ class _Foot:
         """The joints of a row, measured against the wanted pose."""
         goal, bones = self.problem.target.goal, self.hinges
         run = Run(row[:6].copy(), Status.STALLED, branch=LABELS[int(row[6])])
-        if not len(self.solutions(goal, math.nan, 0.0)):  # not even with a motor of its own
+        if self.longest == math.inf:  # not even with a motor of its own
             distance = float(np.linalg.norm(goal[:3, :3] @ bones.ankle + goal[:3, 3] - bones.hip))
             run.ended = Status.OUT_OF_REACH
             run.misses_by = max(distance - bones.thigh - bones.shank, abs(bones.thigh - bones.shank) - distance)
