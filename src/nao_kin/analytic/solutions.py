@@ -30,7 +30,7 @@ __all__ = ["SAME", "Solutions", "in_window", "kept", "nearest", "slack_of", "sol
 SAME: Final = 1e-9
 """Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
 
-_MEETS: Final = 1e-9  # [m, rad]
+_MEETS: Final = 1e-10  # [m, rad]
 _FEW: Final = 4  # solutions whose joints a terminal has room for with all their digits
 _TURN: Final = 2.0 * math.pi
 _MOST_TURNS: Final = 1000.0  # a range wider than this is a file's way to say that there is no limit

@@ -99,7 +99,7 @@ def found_by(case: Case) -> BatchSolutions:
 
 
 def strata(case: Case, count: int, rng: np.random.Generator) -> Iterator[tuple[str, Case]]:
-    """The same kind of goals at joint limits, at exact singularities and ever nearer to them; from Pinocchio's poses."""
+    """The same kind of goals at joint limits, at and near singularities, at the border; by Pinocchio's kinematics."""
     ends = np.array([case.chain.lower, case.chain.upper])
     Q = random_configurations(case.chain, count, rng)
     at_ends = rng.integers(0, 3, Q.shape)
