@@ -32,7 +32,7 @@ __all__ = ["BatchSolutions", "solve_all_batch"]
 _STATUSES: Final = tuple(Status)
 _SOLVED, _OUTSIDE = _STATUSES.index(Status.SOLVED), _STATUSES.index(Status.OUTSIDE_LIMITS)
 _ABSENT: Final = -1
-_MEETS: Final = 1e-9  # [m, rad], as in `nao_kin.analytic.solutions.kept`
+_MEETS: Final = 1e-10  # [m, rad], as in `nao_kin.analytic.solutions.kept`
 
 
 @dataclass(eq=False, slots=True)

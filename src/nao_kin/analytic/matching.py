@@ -98,7 +98,7 @@ def matched(chain: Chain, target: Target, locked: Mapping[str, Any] | None = Non
 
 
 def _match(chain: Chain, kind: GoalKind, values: Mapping[int, Floats]) -> Matched:
-    for form in FORMS:
+    for form in sorted(FORMS, key=lambda form: -form.joints):  # so that no joint is held that could be given
         request = form.requests.get(kind)
         if request is None or len(chain.joints) - len(values) + len(request.given) != form.joints:
             continue

@@ -29,20 +29,22 @@ if TYPE_CHECKING:
 
 __all__ = ["JOINTS", "LABELS", "SHORTEST", "SINGULARITIES", "recognise"]
 
-# Where the parameters begin: rotation and origin of the shoulder frame in the base, lengths, what to add to q for θ,
-# rotation of the tip in the hand frame and the tip seen from the elbow point, number of joints, limits of q. Limits
-# decide nothing but which solution stands for a continuum.
+# Where the parameters begin: rotation and origin of the shoulder frame in the base; L and o, hypot(L, o), atan2(o, L);
+# what to add to q for θ; rotation of the tip in the hand frame and the tip seen from the elbow point; number of joints;
+# limits of q, which decide nothing but which solution stands for a continuum.
 BASE: Final = 0
 SHOULDER: Final = 9
 LENGTH: Final = 12
 OFFSET: Final = 13
-SHIFTS: Final = 14
-HAND: Final = 19
-TIP: Final = 28
-JOINTS: Final = 31
-LOWER: Final = 32
-UPPER: Final = 37
-_SIZE: Final = 42
+REACH: Final = 14
+BEND: Final = 15
+SHIFTS: Final = 16
+HAND: Final = 21
+TIP: Final = 30
+JOINTS: Final = 33
+LOWER: Final = 34
+UPPER: Final = 39
+_SIZE: Final = 44
 
 SHORTEST: Final = 1e-6
 """Below this distance of shoulder and elbow [m] there is no upper arm."""
@@ -103,6 +105,8 @@ def _parameters(w: Floats, shoulder: Floats, elbow: Floats, tip: Floats, joints:
     parameters = np.zeros(_SIZE)
     parameters[BASE:SHOULDER], parameters[SHOULDER:LENGTH] = still.ravel(), shoulder
     parameters[LENGTH], parameters[OFFSET], _ = upper.T @ (elbow - shoulder)
+    parameters[REACH] = math.hypot(parameters[LENGTH], parameters[OFFSET])
+    parameters[BEND] = math.atan2(parameters[OFFSET], parameters[LENGTH])
     parameters[SHIFTS + 1] = _angle(still, upper, 1, 0)  # about z, of x
     parameters[SHIFTS + 2] = _angle(upper, fore, 2, 1)  # about x, of y
     parameters[SHIFTS + 3] = _angle(fore, hand, 1, 0)

@@ -5,24 +5,25 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.analytic.nao_arm import BASE, HAND, JOINTS, LENGTH, OFFSET, SHIFTS, SHOULDER, TIP
+from nao_kin.analytic.nao_arm import BASE, HAND, JOINTS, LENGTH, OFFSET, REACH, SHIFTS, SHOULDER, TIP
 from nao_kin.analytic.nao_arm_joints import (
     ANY_ELBOW_ROLL,
     ANY_SHOULDER_PITCH,
     ANY_SHOULDER_ROLL,
     ANY_TURN,
+    NEARLY_NOTHING,
     NOTHING,
     REGULAR,
     TRIES,
     any_inside,
     before_elbow,
     from_elbow_point,
-    shoulder_pitch,
-    shoulder_roll,
+    shoulder_at,
     trial,
+    upper_arm,
     write,
 )
-from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
+from nao_kin.kernels.compiling import jit, leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import (
     Nine,
     Three,
@@ -83,7 +84,7 @@ def _pose(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> int:
     reach = turned(R, vector_at(parameters, TIP))
     d = _from_shoulder(parameters, goal)
     e = (d[0] - reach[0], d[1] - reach[1], d[2] - reach[2])
-    if abs(math.sqrt(dot(e, e)) - math.hypot(parameters[LENGTH], parameters[OFFSET])) > slack:
+    if abs(math.sqrt(dot(e, e)) - parameters[REACH]) > slack:
         return 0
     return from_elbow_point(parameters, e, R, 0, 0, rows)
 
@@ -142,26 +143,23 @@ def _from_tip(
 
     Rz(θ2) turns (v_x, v_y) to (±s, e_y), where s² is what the distance from axis 1 leaves beside v_z.
     """
-    across = math.hypot(e[0], e[2])
+    across = math.sqrt(e[0] * e[0] + e[2] * e[2])
     if abs(v[2]) - across > slack:
         return count
     s = math.sqrt(max(0.0, (across - v[2]) * (across + v[2])))
-    size = math.hypot(v[0], v[1])
-    if singular == REGULAR and size <= NOTHING * math.hypot(parameters[LENGTH], parameters[OFFSET]):
-        singular = ANY_SHOULDER_ROLL
+    # (±s, e_y) and (v_x, v_y), then (e_x, e_z) and (±s, v_z): each difference of two directions is an angle.
+    free, direction, own = singular, math.atan2(e[1], s), math.atan2(v[1], v[0])
+    if v[0] * v[0] + v[1] * v[1] <= (NOTHING * parameters[REACH]) ** 2:
+        free, own = ANY_SHOULDER_ROLL if singular == REGULAR else singular, direction - parameters[SHIFTS + 1]
+    around, rise = math.atan2(e[0], e[2]), math.atan2(s, v[2])
+    if across <= NOTHING * parameters[REACH]:
+        free, around = ANY_SHOULDER_PITCH if singular == REGULAR else singular, rise
     for shoulder in range(2 if s > 0.0 else 1):
-        signed = s if (shoulder == 0) == (parameters[LENGTH] >= 0.0) else -s
-        c2, s2 = math.cos(parameters[SHIFTS + 1]), math.sin(parameters[SHIFTS + 1])
-        if singular != ANY_SHOULDER_ROLL:
-            whole = size * math.hypot(s, e[1])
-            c2, s2 = (signed * v[0] + e[1] * v[1]) / whole, (e[1] * v[0] - signed * v[1]) / whole
-        c1, s1, free = 1.0, 0.0, singular
-        whole = across * math.hypot(s, v[2])
-        if whole > NOTHING * NOTHING * (parameters[LENGTH] ** 2 + parameters[OFFSET] ** 2):
-            c1, s1 = (e[0] * signed + e[2] * v[2]) / whole, (e[0] * v[2] - e[2] * signed) / whole
-        elif free == REGULAR:
-            free = ANY_SHOULDER_PITCH
-        count = write(parameters, (c1, s1, c2, s2), wrist, 2 * shoulder + elbow, free, count, rows)
+        if (shoulder == 0) == (parameters[LENGTH] >= 0.0):
+            upper = (0.0, 0.0, 0.0, 0.0, around - rise, direction - own)
+        else:
+            upper = (0.0, 0.0, 0.0, 0.0, around + rise, math.pi - direction - own)
+        count = write(parameters, upper, wrist, 2 * shoulder + elbow, free, count, rows)
     return count
 
 
@@ -175,18 +173,19 @@ def _pointing(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> i
     base, hand = rotation_at(parameters, BASE), rotation_at(parameters, HAND)
     a = turned(hand, (goal[0, 0], goal[1, 0], goal[2, 0]))
     b = turned_back(base, (goal[0, 1], goal[1, 1], goal[2, 1]))
-    d, t = _from_shoulder(parameters, goal), between(a, b, vector_at(parameters, TIP))
+    d, start = _from_shoulder(parameters, goal), _any_turn(a, b)
+    t = turned(start, vector_at(parameters, TIP))
     along = dot(t, b)
     beside = (t[0] - along * b[0], t[1] - along * b[1], t[2] - along * b[2])
     f = (d[0] - along * b[0], d[1] - along * b[1], d[2] - along * b[2])
     square = cross(b, beside)
-    rho = math.hypot(parameters[LENGTH], parameters[OFFSET])
+    rho = parameters[REACH]
     p, q, c = dot(f, beside), dot(f, square), 0.5 * (dot(f, f) + dot(beside, beside) - rho * rho)
     if math.hypot(p, q) <= NOTHING * rho * rho:
         if abs(math.sqrt(max(0.0, rho * rho + 2.0 * c)) - rho) > slack:
             return 0
         e = (f[0] - beside[0], f[1] - beside[1], f[2] - beside[2])
-        return _aim_along_hand(parameters, e, a, b, rows)
+        return _aim_along_hand(parameters, e, d, a, b, slack, rows)
     roots, cosine, sine, other_cosine, other_sine = circle_roots(p, q, c, slack * rho)
     count = 0
     for turn in range(roots):
@@ -197,59 +196,83 @@ def _pointing(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> i
             f[1] - cosine * beside[1] - sine * square[1],
             f[2] - cosine * beside[2] - sine * square[2],
         )
-        # Four joints can aim at b without ψ, and more exactly so, unless the axis is nearly that of the elbow roll.
-        if parameters[JOINTS] == 5.0 or a[0] * a[0] + a[1] * a[1] < 0.25:
-            R = _turned_to(a, b, cosine, sine)
+        # Four joints can aim at b without ψ, and more exactly so, unless the axis is nearly that of the elbow roll or
+        # the elbow's place does not give the shoulder pitch.
+        blind = a[0] * a[0] + a[1] * a[1] < 0.25 or math.hypot(e[0], e[2]) < NEARLY_NOTHING * rho
+        if parameters[JOINTS] == 5.0 or blind:
+            R = _turned_on(b, cosine, sine, start)
             count = from_elbow_point(parameters, e, R, 4 + 4 * turn, count, rows)
         else:
-            count = _aim(parameters, e, a, b, 0.0, 4 + 4 * turn, REGULAR, count, rows)
+            count = _aim(parameters, e, d, a, b, 0.0, 4 + 4 * turn, REGULAR, slack, count, rows)
     return count
 
 
 @leaf_jit
-def _aim_along_hand(parameters: Floats, e: Three, a: Three, b: Three, rows: Floats) -> int:
+def _aim_along_hand(parameters: Floats, e: Three, d: Three, a: Three, b: Three, slack: float, rows: Floats) -> int:
     """Solutions where the pointing axis passes through the elbow point, so that a turn about it moves nothing else.
 
     Of five joints one is free then: the first wrist yaw that is within limits with all others stands for the rest.
     """
     if parameters[JOINTS] != 5.0:
-        return _aim(parameters, e, a, b, 0.0, 0, REGULAR, 0, rows)
+        return _aim(parameters, e, d, a, b, 0.0, 0, REGULAR, slack, 0, rows)
     for k in range(TRIES):
-        count = _aim(parameters, e, a, b, trial(k), 0, ANY_TURN, 0, rows)
+        count = _aim(parameters, e, d, a, b, trial(k), 0, ANY_TURN, slack, 0, rows)
         if any_inside(parameters, rows, 0, count):
             return count
-    return _aim(parameters, e, a, b, 0.0, 0, ANY_TURN, 0, rows)
+    return _aim(parameters, e, d, a, b, 0.0, 0, ANY_TURN, slack, 0, rows)
 
 
-@leaf_jit
-def _turned_to(a: Three, b: Three, cosine: float, sine: float) -> Nine:
-    """Rot(b, ψ) R0 with R0 a = b."""
-    x = turned_about(b, cosine, sine, between(a, b, (1.0, 0.0, 0.0)))
-    y = turned_about(b, cosine, sine, between(a, b, (0.0, 1.0, 0.0)))
-    z = turned_about(b, cosine, sine, between(a, b, (0.0, 0.0, 1.0)))
+@jit
+def _any_turn(a: Three, b: Three) -> Nine:
+    """A rotation R0 with R0 a = b."""
+    x, y, z = between(a, b, (1.0, 0.0, 0.0)), between(a, b, (0.0, 1.0, 0.0)), between(a, b, (0.0, 0.0, 1.0))
+    return x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]
+
+
+@jit
+def _turned_on(b: Three, cosine: float, sine: float, R: Nine) -> Nine:
+    """Rot(b, ψ) R."""
+    x = turned_about(b, cosine, sine, (R[0], R[3], R[6]))
+    y = turned_about(b, cosine, sine, (R[1], R[4], R[7]))
+    z = turned_about(b, cosine, sine, (R[2], R[5], R[8]))
     return x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]
 
 
 @leaf_jit
 def _aim(
-    parameters: Floats, e: Three, a: Three, b: Three, t5: float, first: int, singular: int, count: int, rows: Floats
+    parameters: Floats,
+    e: Three,
+    d: Three,
+    a: Three,
+    b: Three,
+    t5: float,
+    first: int,
+    singular: int,
+    slack: float,
+    count: int,
+    rows: Floats,
 ) -> int:
-    """Solutions with the elbow point at e, the hand's axis a along b, and θ5 known: Rx(θ3) Rz(θ4) Rx(θ5) a = m."""
+    """Solutions with the elbow point at e, the tip at d and the hand's axis a along b, and θ5 known.
+
+    Rx(θ3) Rz(θ4) turns a' = Rx(θ5) a to m, which is b before the elbow, and the hand t' likewise to d − e.
+    """
     c5, s5 = math.cos(t5), math.sin(t5)
     a = (a[0], c5 * a[1] - s5 * a[2], s5 * a[1] + c5 * a[2])
-    across = math.hypot(e[0], e[2])
+    if math.sqrt(a[0] * a[0] + a[1] * a[1]) <= NOTHING:
+        return count  # the hand's axis is that of the elbow roll: it points by chance, if at all
+    hx, ty, tz = vector_at(parameters, TIP)
+    hy, at = c5 * ty - s5 * tz, shoulder_at(parameters, e)
+    free = singular if singular != REGULAR else at[3]
     for shoulder in range(2):
-        c2, s2 = shoulder_roll(parameters, across if shoulder == 0 else -across, e[1])
-        c1, s1, free = shoulder_pitch(parameters, e, shoulder)
-        upper = (c1, s1, c2, s2)
-        free = singular if singular != REGULAR else free
+        upper = upper_arm(parameters, e, at, shoulder)
         m = before_elbow(upper, b)
-        if math.hypot(a[0], a[1]) <= NOTHING:
-            continue  # the hand's axis is that of the elbow roll: it points by chance, if at all
+        ahead = before_elbow(upper, (d[0] - e[0], d[1] - e[1], d[2] - e[2]))[0]
         roots, c4, s4, other_c4, other_s4 = circle_roots(a[0], -a[1], m[0], math.inf)
         for elbow in range(roots):
             if elbow == 1:
                 c4, s4 = other_c4, other_s4
+            if abs(c4 * hx - s4 * hy - ahead) > slack:
+                continue
             y, z = s4 * a[0] + c4 * a[1], a[2]
             t3 = math.atan2(m[2] * y - m[1] * z, m[1] * y + m[2] * z)
             count = write(

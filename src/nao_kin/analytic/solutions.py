@@ -30,7 +30,8 @@ __all__ = ["SAME", "Solutions", "in_window", "kept", "nearest", "slack_of", "sol
 SAME: Final = 1e-9
 """Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
 
-_MEETS: Final = 1e-9  # [m, rad]
+_MEETS: Final = 1e-10  # [m, rad]
+_FEW: Final = 4  # solutions whose joints a terminal has room for with all their digits
 _TURN: Final = 2.0 * math.pi
 _MOST_TURNS: Final = 1000.0  # a range wider than this is a file's way to say that there is no limit
 _REACHED: Final = (Status.SOLVED, Status.OUTSIDE_LIMITS)
@@ -61,14 +62,16 @@ class Solutions(tuple[IKResult, ...]):
 
     def __repr__(self) -> str:
         lines = [f"<{len(self)} solutions{': ' + self.reason if self.reason else ''}"]
-        return "\n  ".join([*lines, *(f"{result.branch or 'the one'}: {result!r}" for result in self)]) + ">"
+        return "\n  ".join([*lines, *(f"{result.branch or 'the only one'}: {result!r}" for result in self)]) + ">"
 
     def table(self, title: str = "") -> Table:
-        """One row a solution: branch, status, errors, joints."""
+        """One column a solution: its joints [rad or m]; below, the status and branch of each."""
         names = self[0].problem.chain.joint_names if self else ()
-        columns = (Column("branch"), Column("status"), *(Column(name, number=True) for name in names))
-        rows = tuple((r.branch or "the one", r.status.name, *(f"{value:.6f}" for value in r.q)) for r in self)
-        return Table(columns, rows, title=title, note=self.reason)
+        columns = (Column("joint"), *(Column(f"#{i + 1}", number=True) for i in range(len(self))))
+        digits = 6 if len(self) <= _FEW else 4
+        rows = tuple((name, *(f"{result.q[k]:.{digits}f}" for result in self)) for k, name in enumerate(names))
+        told = [f"#{i + 1} {r.status.name}: {r.branch or 'the only one'}." for i, r in enumerate(self)]
+        return Table(columns, rows, title=title, note="\n".join([*told, self.reason]).strip())
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()

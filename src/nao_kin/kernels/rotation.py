@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
 
 from nao_kin.kernels.compiling import jit, leaf_jit
 
@@ -33,7 +35,7 @@ __all__ = [
 Three: TypeAlias = tuple[float, float, float]
 Nine: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 
-_TURN: Final = 2.0 * math.pi
+_TURN, _PER_TURN = 2.0 * math.pi, 0.5 / math.pi
 
 
 @leaf_jit
@@ -166,4 +168,5 @@ def between(a: Three, b: Three, v: Three) -> Three:
 @jit
 def wrapped(angle: float) -> float:
     """The same angle [rad] in [−π, π); one already there is returned to the bit."""
-    return angle - _TURN * math.floor((angle + math.pi) / _TURN)
+    whole: float = angle - _TURN * np.floor((angle + math.pi) * _PER_TURN)
+    return whole

@@ -58,7 +58,7 @@ def circle_roots(a: float, b: float, c: float, slack: float) -> tuple[int, float
     They are atan2(b, a) ± arccos(c / hypot(a, b)), which is never computed. Where |c| is beyond hypot(a, b) by no more
     than `slack`, the one angle that comes nearest counts as a root. Both are written always; a and b are not both 0.
     """
-    most = math.hypot(a, b)
+    most = math.sqrt(a * a + b * b)
     if abs(c) - most > slack:
         return 0, 1.0, 0.0, 1.0, 0.0
     a, b, c = a / most, b / most, max(-1.0, min(1.0, c / most))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
@@ -22,4 +23,5 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(closed)
 bench.command()(startup)
