@@ -62,7 +62,7 @@ FORMS: Final = (
     ClosedForm(
         name="nao_leg",
         title="NAO leg of six joints, from torso to foot or from foot to torso",
-        source="Kofinas 2012, section 4, for the problem; derived in nao_kin.analytic.nao_leg",
+        source="Kofinas, Orfanoudakis and Lagoudakis 2013, the leg; derived in nao_kin.analytic.nao_leg",
         joints=6,
         requests={"pose": Request(leg_kernel.BRANCHES)},
         labels=nao_leg.LABELS,

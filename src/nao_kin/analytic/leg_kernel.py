@@ -1,8 +1,7 @@
 """The compiled half of `nao_kin.analytic.nao_leg`: a foot's pose to all joints of the leg.
 
-All branches share their arc tangents. Turning the foot over by half a turn of the ankle roll, or the hip by half a turn
-of its first axis, changes the other angles by half turns and signs only; the knee's sign changes none of the hip's
-first two angles, since the pitch axis does not care how the leg is folded.
+The branches of one ankle roll share their arc tangents: the knee's sign leaves the hip's first two angles alone, since
+the pitch axis does not care how the leg is folded, and the hip's other branch is half a turn away in all three angles.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import numpy as np
 from nao_kin.analytic.ranges import middles_and_halves
 from nao_kin.analytic.triangle import NONE, ONE, ROUNDING, bend
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
-from nao_kin.kernels.rotation import wrapped
+from nao_kin.kernels.rotation import Nine, Three, wrapped
 from nao_kin.kernels.trigonometry import sine_cosine
 
 if TYPE_CHECKING:
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-    _Rotation: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
     _Angles: TypeAlias = tuple[float, float, float, float, float, float]
 
 __all__ = ["ANY_YAW", "BRANCHES", "pack", "runs_backwards", "segments", "solve", "solve_many", "solve_with_yaw"]
@@ -135,7 +133,7 @@ def solve_with_yaw(leg: Floats, goal: Floats, yaw: float, slack: float, rows: Fl
 @leaf_jit
 def _at_roll(
     leg: Floats,
-    R: _Rotation,
+    R: Nine,
     given_yaw: float,
     t6: float,
     over: int,
@@ -195,9 +193,7 @@ def _at_roll(
 
 
 @leaf_jit
-def _any_roll(
-    leg: Floats, R: _Rotation, yaw: float, t4: float, t45: float, folded: float, free: int, rows: Floats
-) -> int:
+def _any_roll(leg: Floats, R: Nine, yaw: float, t4: float, t45: float, folded: float, free: int, rows: Floats) -> int:
     """Writes the branches of one ankle roll where any would do, the hip being on the axis of the ankle roll.
 
     Of the rolls tried, it is the one nearest to the middle of its range that brings a branch into the limits; if there
@@ -218,7 +214,8 @@ def _any_roll(
 def _inside(leg: Floats, rows: Floats, row: int) -> bool:
     beyond = -math.inf
     for k in range(6):
-        beyond = max(beyond, abs(rows[row, int(leg[_COLUMNS + k])] - leg[_MIDDLES + k]) - leg[_HALVES + k])
+        away = wrapped(rows[row, int(leg[_COLUMNS + k])] - leg[_MIDDLES + k])
+        beyond = max(beyond, abs(away) - leg[_HALVES + k])
     return beyond <= ROUNDING
 
 
@@ -245,7 +242,7 @@ def _store(leg: Floats, rows: Floats, count: int, angles: _Angles, code: int, fr
 
 
 @leaf_jit
-def _seen_from_foot(leg: Floats, goal: Floats) -> tuple[_Rotation, tuple[float, float, float]]:
+def _seen_from_foot(leg: Floats, goal: Floats) -> tuple[Nine, Three]:
     """Orientation R of the foot in the hip's frame, row by row, and the hip in the foot's frame [m]."""
     xx, xy, xz, px = _row(leg, goal, 0)
     yx, yy, yz, py = _row(leg, goal, 1)

@@ -12,7 +12,7 @@ orientation. Two signs each for knee, ankle and hip make eight solutions; nothin
 
 A path from the foot to the torso is the same leg backwards and recognised as such.
 
-Source: the inverse problem of Kofinas 2012, section 4, whose chain this is; the solution is derived here.
+Source: the leg of Kofinas, Orfanoudakis and Lagoudakis 2013, whose chain this is; the solution is derived here.
 """
 
 from __future__ import annotations

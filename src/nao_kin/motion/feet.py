@@ -12,8 +12,8 @@ two, and each foot gives up a little of its orientation:
 3. The angle is the one at which the weighted sum of the two squared errors is least. Where a joint would be outside
    its range there, it is the best of those at which none is.
 
-The other way to choose, a blend of the two wanted angles by a fixed ratio (as in B-Human's walk), is near to this one
-with equal weights; here the ratio follows from the errors.
+Another way to choose is a blend of the two wanted angles by a fixed ratio, as B-Human's walk does; here the ratio
+follows from the errors.
 """
 
 from __future__ import annotations
