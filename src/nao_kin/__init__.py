@@ -10,6 +10,11 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from nao_kin.analytic.batch import BatchSolutions as BatchSolutions
+    from nao_kin.analytic.batch import solve_all_batch as solve_all_batch
+    from nao_kin.analytic.solutions import Solutions as Solutions
+    from nao_kin.analytic.solutions import nearest as nearest
+    from nao_kin.analytic.solutions import solve_all as solve_all
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
@@ -46,6 +51,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "BatchResult": "ik.batch",
+    "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
     "Chain": "chain",
     "ChainJoint": "chain",
@@ -58,6 +64,7 @@ _HOME = {
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
     "Robot": "robot",
+    "Solutions": "analytic.solutions",
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
@@ -70,10 +77,13 @@ _HOME = {
     "export_html": "view.export",
     "follow": "ik.along",
     "load": "robot",
+    "nearest": "analytic.solutions",
     "project_to_reach": "ik.along",
     "robot_names": "known",
     "show": "view.export",
     "solve": "ik.methods",
+    "solve_all": "analytic.solutions",
+    "solve_all_batch": "analytic.batch",
     "solve_batch": "ik.batch",
     "solve_tree": "ik.tree",
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
@@ -27,5 +28,6 @@ bench.command()(ik)
 bench.command()(edges)
 bench.command()(methods)
 bench.command()(practicum)
+bench.command()(closed)
 bench.command()(startup)
 bench.command()(tips)
