@@ -25,6 +25,7 @@ from nao_kin.cli.output import OutputFormat
 
 IK = ("ik", "--targets", "20", "--batch", "40", "--runs", "1")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
+CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -74,7 +75,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, CLOSED])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -98,6 +99,19 @@ def test_ik_solves_everything_alone_in_batches_and_on_many_robots() -> None:
     assert all(row["success"] == 100.0 and row["same_bits"] and row["ratio"] is None for row in data["batch"])
     assert len(data["robots"]) == len(many_chains()[0])
     assert missed(data) == []
+
+
+def test_closed_recovers_everything_and_prices_the_folded_arm() -> None:
+    data = data_of(*CLOSED)
+    forms = {row["form"] for row in data["closed"]}
+    assert {"nao_head", "nao_arm_h21", "nao_arm_h25"} <= forms
+    assert all(row["recovered"] == row["regular"] and row["missing"] == 0 for row in data["closed"])
+    assert all(row["wrong"] == row["nan"] == 0 for row in data["strata"])
+    same, solved = data["folded"]
+    # By the offsets alone: the elbow's 15 mm turns with the upper arm, the hand's 12.31 mm with the hand.
+    assert 5.0 < same["median"] < same["most"] <= 2.0 * 15.0 + 12.31
+    assert solved["median"] > 5.0
+    assert missed(data, "CFJ") == []
 
 
 def test_a_peer_that_lies_has_no_success(fakes: None) -> None:
