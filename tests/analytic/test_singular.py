@@ -10,7 +10,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.chain import random_configurations
-from tests.analytic.goals import ARMS, CAMERAS, REQUESTS, chain_of, errors, locked_of, targets_of
+from tests.analytic.goals import ARMS, CAMERAS, REQUESTS, chain_of, errors, locked_of, move, targets_of
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -103,6 +103,23 @@ def test_pointing_along_the_line_through_the_elbow_point(part: str, rng: np.rand
         results = nk.solve_all(chain, nk.Target.pointing(T.translation, T.rotation @ axis, axis))
         assert results.solved
         assert all("any turn about the pointing axis" in result.branch for result in results)
+
+
+@pytest.mark.parametrize(("name", "part"), ARMS)
+def test_pointing_along_a_line_through_the_shoulder(name: str, part: str, rng: np.random.Generator) -> None:
+    """The whole arm may turn about such a line: five joints have a continuum, four a solution here and there."""
+    chain = chain_of(name, part)
+    shoulder = np.array([0.0, 0.098 if part == "left_arm" else -0.098, 0.1])
+    for q in random_configurations(chain, 20, rng):
+        T = chain.pose(q)
+        axis = T.rotation.T @ (T.translation - shoulder)
+        results = nk.solve_all(chain, nk.Target.pointing(T.translation, T.translation - shoulder, axis))
+        assert results.solved
+        assert all(errors(result) <= 1e-10 for result in results)
+        if len(q) == 5:
+            assert all("any turn about the pointing axis" in result.branch for result in results)
+        else:
+            assert min(move(result.q, q) for result in results) <= 1e-6
 
 
 def test_the_head_frame_itself_is_at_the_neck() -> None:
