@@ -130,18 +130,79 @@ def _around_shoulder(
             rows[i, n + 1] = ANY_TURN
         return count
     for shoulder in range(2):
-        low, at_low = -math.pi, _wrist_needed(parameters, f, beside, b, start, shoulder, -math.pi)
-        for k in range(1, TRIES):
-            high = -math.pi + 2.0 * math.pi * k / (TRIES - 1)
-            at_high = _wrist_needed(parameters, f, beside, b, start, shoulder, high)
-            if at_low * at_high <= 0.0 and at_high != 0.0 and count + 8 <= rows.shape[0]:
-                turn = _bisected(parameters, f, beside, b, start, shoulder, low, high)
-                cosine, sine = math.cos(turn), math.sin(turn)
-                e, R = _elbow_point(f, beside, b, cosine, sine), _turned_on(b, cosine, sine, start)
-                if abs(math.sqrt(dot(e, e)) - parameters[REACH]) <= slack:
-                    count = from_elbow_point(parameters, e, R, 0, count, rows)
-            low, at_low = high, at_high
+        count = _search(parameters, f, beside, b, start, shoulder, slack, count, rows)
     return count
+
+
+@leaf_jit
+def _search(
+    parameters: Floats,
+    f: Three,
+    beside: Three,
+    b: Three,
+    start: Nine,
+    shoulder: int,
+    slack: float,
+    count: int,
+    rows: Floats,
+) -> int:
+    """Solutions at the turns ψ where four joints need no wrist yaw: changes of sign, and dips that may hide two."""
+    step = 2.0 * math.pi / (TRIES - 1)
+    at_before = _wrist_needed(parameters, f, beside, b, start, shoulder, -math.pi)
+    at_low = _wrist_needed(parameters, f, beside, b, start, shoulder, step - math.pi)
+    for k in range(2, TRIES + 2):  # two steps more than a turn, so that each sample is once in the middle
+        before, low, high = (k - 2) * step - math.pi, (k - 1) * step - math.pi, k * step - math.pi
+        at_high = _wrist_needed(parameters, f, beside, b, start, shoulder, high)
+        if at_low * at_high <= 0.0:
+            turn = _bisected(parameters, f, beside, b, start, shoulder, low, high)
+            count = _follow(parameters, f, beside, b, start, turn, slack, count, rows)
+        elif at_before * at_low > 0.0 and abs(at_low) <= abs(at_before) and abs(at_low) <= abs(at_high):
+            dip = _lowest(parameters, f, beside, b, start, shoulder, before, high)
+            first = _bisected(parameters, f, beside, b, start, shoulder, before, dip)
+            second = _bisected(parameters, f, beside, b, start, shoulder, high, dip)
+            count = _follow(parameters, f, beside, b, start, first, slack, count, rows)
+            count = _follow(parameters, f, beside, b, start, second, slack, count, rows)
+        at_before, at_low = at_low, at_high
+    return count
+
+
+@leaf_jit
+def _follow(
+    parameters: Floats,
+    f: Three,
+    beside: Three,
+    b: Three,
+    start: Nine,
+    turn: float,
+    slack: float,
+    count: int,
+    rows: Floats,
+) -> int:
+    """The solutions at a turn ψ, if it puts the elbow point where the upper arm reaches."""
+    cosine, sine = math.cos(turn), math.sin(turn)
+    e, R = _elbow_point(f, beside, b, cosine, sine), _turned_on(b, cosine, sine, start)
+    if abs(math.sqrt(dot(e, e)) - parameters[REACH]) > slack or count + 8 > rows.shape[0]:
+        return count
+    return from_elbow_point(parameters, e, R, 0, count, rows)
+
+
+@leaf_jit
+def _lowest(
+    parameters: Floats, f: Three, beside: Three, b: Three, start: Nine, shoulder: int, low: float, high: float
+) -> float:
+    """The turn between two at which what is needed of the wrist comes nearest to changing its sign, or changes it."""
+    sign = _wrist_needed(parameters, f, beside, b, start, shoulder, low)
+    for _ in range(60):
+        left, right = low + 0.382 * (high - low), high - 0.382 * (high - low)
+        at_left = sign * _wrist_needed(parameters, f, beside, b, start, shoulder, left)
+        at_right = sign * _wrist_needed(parameters, f, beside, b, start, shoulder, right)
+        if at_left < at_right:
+            high = right
+        else:
+            low = left
+        if at_left < 0.0 or at_right < 0.0:
+            return left if at_left < at_right else right
+    return 0.5 * (low + high)
 
 
 @leaf_jit
@@ -159,7 +220,7 @@ def _wrist_needed(
 def _bisected(
     parameters: Floats, f: Three, beside: Three, b: Three, start: Nine, shoulder: int, low: float, high: float
 ) -> float:
-    """The turn between two of different sign at which no wrist yaw is needed, to the last bit but one."""
+    """The turn between two of different sign at which no wrist yaw is needed; of equal sign, the second one."""
     sign = _wrist_needed(parameters, f, beside, b, start, shoulder, low)
     for _ in range(60):
         middle = 0.5 * (low + high)
