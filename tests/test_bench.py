@@ -31,6 +31,7 @@ TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
 METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
+CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -80,7 +81,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TIPS])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -144,6 +145,19 @@ def test_the_practicums_tasks_report_every_fault() -> None:
     assert missed(data, "pseudo-inverse") == []
     assert {row["count"] for row in data["task_1ef_near"]} >= {128, 64, 1}
     assert sum(note.startswith(("1f,", "1g,")) for note in data["notes"]) == 4
+
+
+def test_closed_recovers_everything_and_prices_the_folded_arm() -> None:
+    data = data_of(*CLOSED)
+    forms = {row["form"] for row in data["closed"]}
+    assert {"nao_head", "nao_arm_h21", "nao_arm_h25"} <= forms
+    assert all(row["recovered"] == row["regular"] and row["missing"] == 0 for row in data["closed"])
+    assert all(row["wrong"] == row["nan"] == 0 for row in data["strata"])
+    same, solved = data["folded"]
+    # By the offsets alone: the elbow's 15 mm turns with the upper arm, the hand's 12.31 mm with the hand.
+    assert 5.0 < same["median"] < same["most"] <= 2.0 * 15.0 + 12.31
+    assert solved["median"] > 5.0
+    assert missed(data, "CFJ") == []
 
 
 def test_a_peer_that_lies_has_no_success(fakes: None) -> None:

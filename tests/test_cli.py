@@ -98,6 +98,22 @@ def test_ik_reaches_and_says_where_it_does_not(tmp_path: Path) -> None:
     assert "is reached" in ok("ik", "jaco2", "--xyz", *pose.translation, "--rpy", *degrees, "--deg")
 
 
+def test_ik_all_lists_every_branch() -> None:
+    posture = ("--posture", "LShoulderRoll=17", "--posture", "LElbowRoll=-30", "--deg")
+    text = ok("ik", "nao", "--chain", "left_arm", *posture, "--all")
+    assert "4 solutions" in text
+    assert "#1 SOLVED: shoulder upright, elbow bent to −." in text
+    assert max(map(len, text.splitlines())) <= 80
+    locked = ("--lock", "LElbowYaw=-1", "--lock", "LWristYaw=0.2")
+    where = ("ik", "nao", "--chain", "left_arm", "--all", "--format", "json")
+    data = json.loads(ok(*where, "--xyz", 0.15, 0.15, 0.1, *locked))
+    assert [s["status"] for s in data["solutions"]] == ["SOLVED", *["OUTSIDE_LIMITS"] * 3]
+    assert {s["q"]["LElbowYaw"] for s in data["solutions"]} == {-1.0}
+    far = json.loads(ok(*where, "--xyz", 5, 0, 0, *locked, status=1))
+    assert far["solutions"] == []
+    assert "misses by" in far["reason"]
+
+
 def test_compare_exits_with_its_verdict(tmp_path: Path) -> None:
     assert "yes" in ok("compare", "kofinas_left_leg")
     text = ok("compare", "thesis_left_arm", "--read-as", "modified", status=1)
@@ -159,6 +175,11 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
         (("ik", "nao", "--posture", "LElbowRoll"), "NAME=NUMBER"),
         (("ik", "nao", "--posture", "LElbowRol=1"), "Did you mean 'LElbowRoll'"),
         (("ik", "nao", "--xyz", 0, 0, 0, "--method", "ml"), "There is no method 'ml'"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all"), "position with LElbowYaw and LWristYaw locked"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--lock", "LElbow=1"), "Did you mean"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--lock", "LElbowYaw=1"), "--lock goes with --all"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--html", "x.html"), "leave out --all"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--method", "dls"), "leave out --all"),
         (("compare", "thesis_left_arm", "nao:left_arm"), "5 joints as"),
         (("compare", "nao:left_arm"), "say what to hold"),
         (("compare", "nao:left_arm", "nao:left_arm", "--read-as", "standard"), "--read-as is for tables"),

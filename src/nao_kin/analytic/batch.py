@@ -32,7 +32,7 @@ __all__ = ["BatchSolutions", "solve_all_batch"]
 _STATUSES: Final = tuple(Status)
 _SOLVED, _OUTSIDE = _STATUSES.index(Status.SOLVED), _STATUSES.index(Status.OUTSIDE_LIMITS)
 _ABSENT: Final = -1
-_MEETS: Final = 1e-10  # [m, rad], as in `nao_kin.analytic.solutions.kept`
+_MEETS: Final = 1e-10  # [m, rad], as one by one
 
 
 @dataclass(eq=False, slots=True)
@@ -188,7 +188,7 @@ def _measured(
 
 
 def _kept(codes: NDArray[np.int8], errors: Floats, q: Floats) -> NDArray[np.bool_]:
-    """Which places hold a solution of their own, by the rules of `nao_kin.analytic.solutions.kept`."""
+    """Which places hold a solution of their own, by the rules of `nao_kin.analytic.solutions.sorted_out`."""
     keep = codes != _ABSENT
     best = np.where(keep, errors, np.inf).min(axis=1, keepdims=True, initial=np.inf)
     keep &= errors <= np.maximum(_MEETS, 1e3 * np.where(np.isfinite(best), best, 0.0))

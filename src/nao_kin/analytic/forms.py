@@ -40,7 +40,7 @@ FORMS: Final = (
         title="NAO arm of four joints, wrist fixed",
         source=_ARMS,
         joints=4,
-        requests={"pose": Request(4), "position": Request(4, (_ELBOW_YAW,)), "pointing": Request(8)},
+        requests={"pose": Request(4), "position": Request(4, (_ELBOW_YAW,)), "pointing": Request(24)},
         labels=nao_arm.LABELS,
         singularities=nao_arm.SINGULARITIES,
         recognise=partial(nao_arm.recognise, joints=4),

@@ -10,7 +10,7 @@ import numpy as np
 from nao_kin.analytic import nao_head
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
-from nao_kin.analytic.solutions import Solutions, in_window, kept, slack_of
+from nao_kin.analytic.solutions import Solutions, in_window, slack_of, sorted_out
 from nao_kin.arrays import Floats, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
@@ -65,13 +65,11 @@ def look_at(
     if found.form.name != "nao_head":
         raise InvalidInputError("chain", "a head: yaw and pitch, and a camera", chain.name)
     axis = gaze((1.0, 0.0, 0.0), tip_axis).goal[:3, 0]
-    results = kept(
-        result for s in _distances(found, p, axis) for result in _looks(found, chain, p, axis, s, tolerances)
-    )
-    results.sort(key=lambda result: not result.solved)
-    if results:
-        return Solutions(results, "" if results[0].solved else "Every solution is outside the limits.")
-    return Solutions((), "The point is behind the camera, or nearer to the neck than the camera's axis passes.")
+    distances = _distances(found, p, axis)
+    solutions = sorted_out(result for s in distances for result in _looks(found, chain, p, axis, s, tolerances))
+    if not solutions:
+        solutions.reason = "The point is behind the camera, or nearer to the neck than the camera's axis passes."
+    return solutions
 
 
 def _distances(found: Matched, point: Floats, axis: Floats) -> list[float]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from nao_kin.analytic.nao_arm import BEND, JOINTS, LENGTH, LOWER, OFFSET, REACH, SHIFTS, UPPER
+from nao_kin.analytic.nao_arm import BASE, BEND, JOINTS, LENGTH, LOWER, OFFSET, REACH, SHIFTS, SHOULDER, UPPER
 from nao_kin.kernels.compiling import jit, leaf_jit
-from nao_kin.kernels.rotation import Nine, Three, turned_y, turned_z, wrapped
+from nao_kin.kernels.rotation import Nine, Three, rotation_at, turned_back, turned_y, turned_z, wrapped
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -30,6 +30,7 @@ __all__ = [
     "any_inside",
     "before_elbow",
     "from_elbow_point",
+    "from_shoulder",
     "shoulder_at",
     "trial",
     "upper_arm",
@@ -54,11 +55,22 @@ ANY_TURN: Final = 6
 NOTHING: Final = 1e-13
 """Sines of angles, and lengths over the upper arm's, below which rounding has eaten the angle: there is a continuum."""
 
-TRIES: Final = 33
+TRIES: Final = 129
 """Angles of a free joint that are tried for a representative within limits."""
 
 NEARLY_NOTHING: Final = 1e-3
 """Below this the shoulder pitch of four joints is better known from the orientation than from the elbow's place."""
+
+
+@leaf_jit
+def from_shoulder(parameters: Floats, goal: Floats) -> Three:
+    """The goal's position seen from the shoulder, in shoulder axes [m]."""
+    p = (
+        goal[0, 3] - parameters[SHOULDER],
+        goal[1, 3] - parameters[SHOULDER + 1],
+        goal[2, 3] - parameters[SHOULDER + 2],
+    )
+    return turned_back(rotation_at(parameters, BASE), p)
 
 
 @leaf_jit

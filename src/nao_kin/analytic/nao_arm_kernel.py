@@ -5,38 +5,27 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.analytic.nao_arm import BASE, HAND, JOINTS, LENGTH, OFFSET, REACH, SHIFTS, SHOULDER, TIP
+from nao_kin.analytic.nao_arm import BASE, HAND, JOINTS, LENGTH, OFFSET, REACH, SHIFTS, TIP
 from nao_kin.analytic.nao_arm_joints import (
     ANY_ELBOW_ROLL,
     ANY_SHOULDER_PITCH,
     ANY_SHOULDER_ROLL,
-    ANY_TURN,
-    NEARLY_NOTHING,
     NOTHING,
     REGULAR,
-    TRIES,
-    any_inside,
-    before_elbow,
     from_elbow_point,
-    shoulder_at,
-    trial,
-    upper_arm,
+    from_shoulder,
     write,
 )
-from nao_kin.kernels.compiling import jit, leaf_jit, parallel_jit, prange
+from nao_kin.analytic.nao_arm_pointing import pointing
+from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import (
-    Nine,
     Three,
-    between,
-    cross,
     dot,
     rotation_at,
     rotation_of_goal,
     times_transposed,
     transposed_times,
     turned,
-    turned_about,
-    turned_back,
     turned_z,
     vector_at,
 )
@@ -73,7 +62,7 @@ def solve(parameters: Floats, kind: int, goal: Floats, given: Floats, slack: flo
         return _pose(parameters, goal, slack, rows)
     if kind == _POSITION:
         return _position(parameters, goal, given, slack, rows)
-    return _pointing(parameters, goal, slack, rows)
+    return pointing(parameters, goal, slack, rows)
 
 
 @leaf_jit
@@ -82,7 +71,7 @@ def _pose(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> int:
         transposed_times(rotation_at(parameters, BASE), rotation_of_goal(goal)), rotation_at(parameters, HAND)
     )
     reach = turned(R, vector_at(parameters, TIP))
-    d = _from_shoulder(parameters, goal)
+    d = from_shoulder(parameters, goal)
     e = (d[0] - reach[0], d[1] - reach[1], d[2] - reach[2])
     if abs(math.sqrt(dot(e, e)) - parameters[REACH]) > slack:
         return 0
@@ -100,7 +89,7 @@ def _position(parameters: Floats, goal: Floats, given: Floats, slack: float, row
     t5 = given[1] if parameters[JOINTS] == 5.0 else 0.0
     hx, y, z = vector_at(parameters, TIP)
     hy, hz = math.cos(t5) * y - math.sin(t5) * z, math.sin(t5) * y + math.cos(t5) * z
-    e, L, o = _from_shoulder(parameters, goal), parameters[LENGTH], parameters[OFFSET]
+    e, L, o = from_shoulder(parameters, goal), parameters[LENGTH], parameters[OFFSET]
     distance = math.sqrt(dot(e, e))
     a, b = L * hx + o * c3 * hy, o * c3 * hx - L * hy
     c = 0.5 * (distance * distance - L * L - o * o - hx * hx - hy * hy - hz * hz) + o * s3 * hz
@@ -161,132 +150,3 @@ def _from_tip(
             upper = (0.0, 0.0, 0.0, 0.0, around + rise, math.pi - direction - own)
         count = write(parameters, upper, wrist, 2 * shoulder + elbow, free, count, rows)
     return count
-
-
-@leaf_jit
-def _pointing(parameters: Floats, goal: Floats, slack: float, rows: Floats) -> int:
-    """Solutions of a position and a pointing axis.
-
-    With R0 any rotation that points right and b the axis in the base, all are R = Rot(b, ψ) R0. The elbow point
-    e = d − R t must be as far from the shoulder as the upper arm is long, which is linear in cos ψ and sin ψ.
-    """
-    base, hand = rotation_at(parameters, BASE), rotation_at(parameters, HAND)
-    a = turned(hand, (goal[0, 0], goal[1, 0], goal[2, 0]))
-    b = turned_back(base, (goal[0, 1], goal[1, 1], goal[2, 1]))
-    d, start = _from_shoulder(parameters, goal), _any_turn(a, b)
-    t = turned(start, vector_at(parameters, TIP))
-    along = dot(t, b)
-    beside = (t[0] - along * b[0], t[1] - along * b[1], t[2] - along * b[2])
-    f = (d[0] - along * b[0], d[1] - along * b[1], d[2] - along * b[2])
-    square = cross(b, beside)
-    rho = parameters[REACH]
-    p, q, c = dot(f, beside), dot(f, square), 0.5 * (dot(f, f) + dot(beside, beside) - rho * rho)
-    if math.hypot(p, q) <= NOTHING * rho * rho:
-        if abs(math.sqrt(max(0.0, rho * rho + 2.0 * c)) - rho) > slack:
-            return 0
-        e = (f[0] - beside[0], f[1] - beside[1], f[2] - beside[2])
-        return _aim_along_hand(parameters, e, d, a, b, slack, rows)
-    roots, cosine, sine, other_cosine, other_sine = circle_roots(p, q, c, slack * rho)
-    count = 0
-    for turn in range(roots):
-        if turn == 1:
-            cosine, sine = other_cosine, other_sine
-        e = (
-            f[0] - cosine * beside[0] - sine * square[0],
-            f[1] - cosine * beside[1] - sine * square[1],
-            f[2] - cosine * beside[2] - sine * square[2],
-        )
-        # Four joints can aim at b without ψ, and more exactly so, unless the axis is nearly that of the elbow roll or
-        # the elbow's place does not give the shoulder pitch.
-        blind = a[0] * a[0] + a[1] * a[1] < 0.25 or math.hypot(e[0], e[2]) < NEARLY_NOTHING * rho
-        if parameters[JOINTS] == 5.0 or blind:
-            R = _turned_on(b, cosine, sine, start)
-            count = from_elbow_point(parameters, e, R, 4 + 4 * turn, count, rows)
-        else:
-            count = _aim(parameters, e, d, a, b, 0.0, 4 + 4 * turn, REGULAR, slack, count, rows)
-    return count
-
-
-@leaf_jit
-def _aim_along_hand(parameters: Floats, e: Three, d: Three, a: Three, b: Three, slack: float, rows: Floats) -> int:
-    """Solutions where the pointing axis passes through the elbow point, so that a turn about it moves nothing else.
-
-    Of five joints one is free then: the first wrist yaw that is within limits with all others stands for the rest.
-    """
-    if parameters[JOINTS] != 5.0:
-        return _aim(parameters, e, d, a, b, 0.0, 0, REGULAR, slack, 0, rows)
-    for k in range(TRIES):
-        count = _aim(parameters, e, d, a, b, trial(k), 0, ANY_TURN, slack, 0, rows)
-        if any_inside(parameters, rows, 0, count):
-            return count
-    return _aim(parameters, e, d, a, b, 0.0, 0, ANY_TURN, slack, 0, rows)
-
-
-@jit
-def _any_turn(a: Three, b: Three) -> Nine:
-    """A rotation R0 with R0 a = b."""
-    x, y, z = between(a, b, (1.0, 0.0, 0.0)), between(a, b, (0.0, 1.0, 0.0)), between(a, b, (0.0, 0.0, 1.0))
-    return x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]
-
-
-@jit
-def _turned_on(b: Three, cosine: float, sine: float, R: Nine) -> Nine:
-    """Rot(b, ψ) R."""
-    x = turned_about(b, cosine, sine, (R[0], R[3], R[6]))
-    y = turned_about(b, cosine, sine, (R[1], R[4], R[7]))
-    z = turned_about(b, cosine, sine, (R[2], R[5], R[8]))
-    return x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]
-
-
-@leaf_jit
-def _aim(
-    parameters: Floats,
-    e: Three,
-    d: Three,
-    a: Three,
-    b: Three,
-    t5: float,
-    first: int,
-    singular: int,
-    slack: float,
-    count: int,
-    rows: Floats,
-) -> int:
-    """Solutions with the elbow point at e, the tip at d and the hand's axis a along b, and θ5 known.
-
-    Rx(θ3) Rz(θ4) turns a' = Rx(θ5) a to m, which is b before the elbow, and the hand t' likewise to d − e.
-    """
-    c5, s5 = math.cos(t5), math.sin(t5)
-    a = (a[0], c5 * a[1] - s5 * a[2], s5 * a[1] + c5 * a[2])
-    if math.sqrt(a[0] * a[0] + a[1] * a[1]) <= NOTHING:
-        return count  # the hand's axis is that of the elbow roll: it points by chance, if at all
-    hx, ty, tz = vector_at(parameters, TIP)
-    hy, at = c5 * ty - s5 * tz, shoulder_at(parameters, e)
-    free = singular if singular != REGULAR else at[3]
-    for shoulder in range(2):
-        upper = upper_arm(parameters, e, at, shoulder)
-        m = before_elbow(upper, b)
-        ahead = before_elbow(upper, (d[0] - e[0], d[1] - e[1], d[2] - e[2]))[0]
-        roots, c4, s4, other_c4, other_s4 = circle_roots(a[0], -a[1], m[0], math.inf)
-        for elbow in range(roots):
-            if elbow == 1:
-                c4, s4 = other_c4, other_s4
-            if abs(c4 * hx - s4 * hy - ahead) > slack:
-                continue
-            y, z = s4 * a[0] + c4 * a[1], a[2]
-            t3 = math.atan2(m[2] * y - m[1] * z, m[1] * y + m[2] * z)
-            count = write(
-                parameters, upper, (t3, math.atan2(s4, c4), t5), first + 2 * shoulder + elbow, free, count, rows
-            )
-    return count
-
-
-@leaf_jit
-def _from_shoulder(parameters: Floats, goal: Floats) -> Three:
-    """The goal's position seen from the shoulder, in shoulder axes [m]."""
-    p = (
-        goal[0, 3] - parameters[SHOULDER],
-        goal[1, 3] - parameters[SHOULDER + 1],
-        goal[2, 3] - parameters[SHOULDER + 2],
-    )
-    return turned_back(rotation_at(parameters, BASE), p)

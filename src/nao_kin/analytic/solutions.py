@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["SAME", "Solutions", "in_window", "kept", "nearest", "slack_of", "solve_all", "told"]
+__all__ = ["SAME", "Solutions", "in_window", "nearest", "slack_of", "solve_all", "sorted_out"]
 
 SAME: Final = 1e-9
 """Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
@@ -111,19 +111,16 @@ def solve_all(
     found = matched(chain, wanted, locked)
     if len(found.given) != 1:
         raise InvalidInputError("locked", "one number a joint; nao_kin.solve_all_batch takes arrays", "an array")
-    return told(found, found.geometry.parameters, [problem], windings=windings)
+    solutions = sorted_out(_judged(found, problem, slack_of(tolerances), windings=windings))
+    if not solutions:
+        solutions.reason = _miss(list(_judged(found, problem, math.inf)))
+    return solutions
 
 
-def told(found: Matched, parameters: Floats, problems: Sequence[Problem], *, windings: bool = False) -> Solutions:
-    """The judged solutions of problems that belong together, with the reason if there is none within the limits."""
-    results = [r for p in problems for r in _judged(found, parameters, p, slack_of(p.tolerances), windings=windings)]
-    good = kept(results)
-    good.sort(key=lambda result: not result.solved)
-    if good:
-        reason = "" if good[0].solved else "Every solution is outside the limits."
-        return Solutions(good, reason)
-    border = [r for p in problems for r in _judged(found, parameters, p, math.inf)]
-    return Solutions((), _miss(border))
+def sorted_out(results: Iterable[IKResult]) -> Solutions:
+    """Judged results without those that miss and without repetitions, those within the limits first."""
+    good = sorted(_kept(results), key=lambda result: not result.solved)
+    return Solutions(good, "" if not good or good[0].solved else "Every solution is outside the limits.")
 
 
 def slack_of(tolerances: Tolerances) -> float:
@@ -131,24 +128,22 @@ def slack_of(tolerances: Tolerances) -> float:
     return 2.0 * (tolerances.position + tolerances.rotation) + 1e-12
 
 
-def _judged(
-    found: Matched, parameters: Floats, problem: Problem, slack: float, *, windings: bool = False
-) -> Iterator[IKResult]:
+def _judged(found: Matched, problem: Problem, slack: float, *, windings: bool = False) -> Iterator[IKResult]:
     form, n = found.form, found.form.joints
     rows = np.empty((found.request.branches, n + 2))
     goal = np.ascontiguousarray(problem.target.goal)
-    count = form.solve(parameters, GOALS[found.kind], goal, found.given[0], slack, rows)
+    count = form.solve(found.geometry.parameters, GOALS[found.kind], goal, found.given[0], slack, rows)
     for row in rows[:count]:
         q = found.template.copy()
         q[list(found.columns)] = row[:n]
         label = form.label(int(row[n]), int(row[n + 1]))
-        for wound in _windings(problem.chain, q, problem.tolerances.limits) if windings else [q]:
-            placed = wound if windings else in_window(problem.chain, wound[None, :])[0]
-            yield judge(problem, Run(placed, Status.SOLVED, branch=label))
+        placed = in_window(problem.chain, q[None, :])[0]
+        for wound in _windings(problem.chain, placed, problem.tolerances.limits) if windings else [placed]:
+            yield judge(problem, Run(wound, Status.SOLVED, branch=label))
 
 
 def in_window(chain: Chain, Q: Floats) -> Floats:
-    """The joints (N, n) moved by whole turns into their limits, as near to the middle as they go."""
+    """Joints (N, n), those outside their limits moved by whole turns to as near to the limits' middle as they go."""
     moved = Q.copy()
     for k, joint in enumerate(chain.joints):
         lower, upper = chain.lower[k], chain.upper[k]
@@ -160,20 +155,20 @@ def in_window(chain: Chain, Q: Floats) -> Floats:
 
 
 def _windings(chain: Chain, q: Floats, tolerance: float) -> Iterator[Floats]:
-    """Every whole turn of the joints that is within limits; a joint that no turn brings inside stays in its middle."""
-    middle, choices = in_window(chain, q[None, :])[0], []
+    """Every whole turn of the joints that is within limits; a joint that no turn brings inside, or without, stays."""
+    choices = []
     for k, joint in enumerate(chain.joints):
         lower, upper = chain.lower[k] - tolerance, chain.upper[k] + tolerance
         if joint.kind == "prismatic" or not upper - lower < _MOST_TURNS * _TURN:
-            choices.append([middle[k]])
+            choices.append([q[k]])
             continue
-        first, last = math.ceil((lower - middle[k]) / _TURN), math.floor((upper - middle[k]) / _TURN)
-        choices.append([middle[k] + turn * _TURN for turn in range(first, last + 1)] or [middle[k]])
+        first, last = math.ceil((lower - q[k]) / _TURN), math.floor((upper - q[k]) / _TURN)
+        choices.append([q[k] + turn * _TURN for turn in range(first, last + 1)] or [q[k]])
     for values in itertools.product(*choices):
         yield np.array(values)
 
 
-def kept(results: Iterable[IKResult]) -> list[IKResult]:
+def _kept(results: Iterable[IKResult]) -> list[IKResult]:
     """The results that reach their target, each once.
 
     Of a goal with more conditions than joints, a branch that just misses while another one meets is not a solution,
@@ -202,11 +197,9 @@ def _miss(border: Sequence[IKResult]) -> str:
 
 
 def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
-    """The solution that is the shortest way from q: the one whose largest joint move is least.
+    """The solution whose largest joint move from q is least, whole turns of a turning joint left out.
 
-    A joint that turns without limits, or to within limits by another way round, is taken the short way: moves count up
-    to whole turns. Solutions within limits come first; only if there is none, the others are compared, and the result's
-    status says so.
+    Only solutions within limits are compared. If there is none, the others are, and the result's status says so.
 
     Args:
         results: What `solve_all` returned.

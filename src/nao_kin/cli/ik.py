@@ -28,7 +28,7 @@ def ik(
     xyz: Annotated[Triple | None, typer.Option(help="Wanted position in the base frame [m].")] = None,
     rpy: Annotated[Triple | None, typer.Option(help="Wanted roll pitch yaw [rad]; without it any will do.")] = None,
     posture: Annotated[list[str] | None, typer.Option(help="NAME=VALUE, repeated: the target is its pose.")] = None,
-    deg: Annotated[bool, typer.Option("--deg", help="--rpy and --posture are in degrees.")] = False,
+    deg: Annotated[bool, typer.Option("--deg", help="--rpy, --posture and --lock are in degrees.")] = False,
     method: Annotated[str, typer.Option(help="A name in nao_kin.METHODS.")] = "lm",
     seed: Annotated[int, typer.Option(help="Seed of the stored starts.")] = 0,
     all: Annotated[bool, typer.Option("--all", help="Every solution, by closed form.")] = False,
@@ -43,6 +43,8 @@ def ik(
     model, path = robot_and_chain(robot, chain, base, tip)
     target = _target(model, path, xyz, rpy, posture, deg)
     if all:
+        if method != "lm":
+            raise typer.BadParameter("--method is for one solution; leave out --all.")
         _every_solution(path, target, parse_posture(lock or [], deg, model), html, format)
         return
     if lock:

@@ -114,6 +114,10 @@ def strata(case: Case, count: int, rng: np.random.Generator) -> Iterator[tuple[s
         yield f"{what}, off by 1e-3 to 1e-12", _again(case, near, rng)
     if case.found.kind == "position" and case.found.form.name.startswith("nao_arm"):
         yield "border of the reach", _again(case, _stretched(case, Q), rng)
+    if case.found.kind == "pointing":
+        yield "line through the shoulder, exactly", _through_shoulder(case, Q, np.zeros((count, 3)))
+        off = rng.choice(_NEAR, (count, 1)) * rng.normal(size=(count, 3))
+        yield "line through the shoulder, off by 1e-3 to 1e-12", _through_shoulder(case, Q, off)
 
 
 def unreachable(case: Case, count: int, rng: np.random.Generator) -> Case | None:
@@ -166,6 +170,16 @@ def _goals(kind: GoalKind, tips: Floats, rng: np.random.Generator) -> Floats:
 def _again(case: Case, Q: Floats, rng: np.random.Generator) -> Case:
     tips = np.array([case.chain.pose(q).homogeneous for q in Q])
     return Case(case.chain, case.found, Q, _goals(case.found.kind, tips, rng))
+
+
+def _through_shoulder(case: Case, Q: Floats, off: Floats) -> Case:
+    """Pointing goals whose line passes the shoulder at about some distance (N, 3) [m]: the arm may turn about it."""
+    numbers, goals = case.found.geometry.parameters, np.array([case.chain.pose(q).homogeneous for q in Q])
+    lines = goals[:, :3, 3] - numbers[nao_arm.SHOULDER : nao_arm.LENGTH] + off
+    lines /= np.linalg.norm(lines, axis=1, keepdims=True)
+    axes = np.einsum("nji,nj->ni", goals[:, :3, :3], lines)
+    goals[:, :3, 0], goals[:, :3, 1], goals[:, :3, 2] = axes, lines, 0.0
+    return Case(case.chain, case.found, Q, goals)
 
 
 def _singular(case: Case) -> dict[str, dict[int, float]]:
