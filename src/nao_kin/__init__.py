@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
+    from nao_kin.dh_from_chain import to_dh as to_dh
     from nao_kin.dh_row import DHRow as DHRow
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
@@ -70,6 +71,7 @@ _HOME = {
     "show": "view.export",
     "solve": "ik.methods",
     "solve_batch": "ik.batch",
+    "to_dh": "dh_from_chain",
 }
 
 __all__ = list(_HOME)

@@ -1,0 +1,236 @@
+"""Why a table and a model disagree: every equally simple set of usual errors that explains it, confirmed by FK."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from nao_kin.chain import random_configurations
+from nao_kin.crosscheck.precision import printed_resolution
+from nao_kin.crosscheck.search import MOST_EDITS, Candidate, Search
+from nao_kin.crosscheck.smallest import SmallestChanges, smallest_changes
+from nao_kin.crosscheck.tables import Goal, Tables, errors_of, goal_of, motion
+from nao_kin.crosscheck.wording import size_text
+from nao_kin.se3 import position_distance, rotation_distance
+from nao_kin.table import Column, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from nao_kin.arrays import Floats
+    from nao_kin.chain import Chain
+    from nao_kin.dh import DHChain
+    from nao_kin.tolerances import Tolerances
+
+__all__ = ["Alternative", "Explanation", "Step", "explain"]
+
+_SEARCHED_ON: Final = 6  # configurations: 36 numbers, more than any table has unknowns
+_CONFIRMED_ON: Final = 24
+_MEASURED_ON: Final = 200
+_FEW: Final = 2
+_TEXTS_SHOWN: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One edit, and what it alone is worth.
+
+    Attributes:
+        kind: What sort of error it takes back.
+        text: What to do.
+        position: How far off the tip is, at most, if all of the other edits are made and this one is not [m].
+        rotation: The same for its orientation [rad].
+    """
+
+    kind: str
+    text: str
+    position: float
+    rotation: float
+
+    def __str__(self) -> str:
+        return f"{self.text} ({size_text(self.position, self.rotation)})"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Alternative:
+    """One set of edits after which the table agrees with the model.
+
+    Attributes:
+        edits: What to do, in order.
+        kinds: What sort of error each edit takes back.
+        table: The table after them.
+        position_error: What is left, at most, at configurations the search has not seen [m].
+        rotation_error: The same [rad].
+    """
+
+    edits: tuple[str, ...]
+    kinds: tuple[str, ...]
+    table: DHChain
+    position_error: float
+    rotation_error: float
+
+    def __str__(self) -> str:
+        return "; ".join(self.edits)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Explanation:
+    """What was found out about a disagreement. Sets of edits are possibilities, never the cause.
+
+    Attributes:
+        table: The table explained: the first chain, or its `to_dh` where it is no table.
+        steps: The edits of the first alternative, with what each is worth.
+        alternatives: Every set of equally few edits that was found and that both chains' own poses confirm, the least
+            far-fetched first; empty if nothing explains the disagreement.
+        exact: Whether the alternatives agree to rounding; else they agree as well as the printed digits can say.
+        position_tolerance: What "agree" means for them [m].
+        rotation_tolerance: The same [rad].
+        smallest: The smallest changes of all numbers, where there is no alternative.
+        note: Why there is nothing to report, where that is so.
+    """
+
+    table: DHChain | None
+    steps: tuple[Step, ...]
+    alternatives: tuple[Alternative, ...]
+    exact: bool
+    position_tolerance: float
+    rotation_tolerance: float
+    smallest: SmallestChanges | None
+    note: str = ""
+
+    @classmethod
+    def without_search(cls, table: DHChain | None, tolerances: Tolerances, note: str) -> Explanation:
+        """What there is to say where nothing was searched."""
+        position, rotation = tolerances.agreement_position, tolerances.agreement_rotation
+        return cls(table, (), (), True, position, rotation, None, note)
+
+    @property
+    def corrected(self) -> DHChain | None:
+        """The first alternative's table."""
+        return self.alternatives[0].table if self.alternatives else None
+
+    def __str__(self) -> str:
+        if self.note:
+            return self.note
+        if not self.alternatives:
+            return self._unexplained()
+        first = self.alternatives[0]
+        left = size_text(first.position_error, first.rotation_error)
+        how = "" if self.exact else f", which is within the digits printed ({self.position_tolerance * 1e3:.2g} mm),"
+        lines = [f"Agrees to {left}{how} after:"]
+        lines += [f"  {step}" for step in self.steps]
+        others = self.alternatives[1:]
+        if others:
+            count = f"{len(others)} other set{'s' if len(others) > 1 else ''} of {len(first.edits)}"
+            lines.append(f"or after any of {count}:")
+            lines += [f"  {other}" for other in others[:_TEXTS_SHOWN]]
+        if len(others) > _TEXTS_SHOWN:
+            lines.append(f"  … and {len(others) - _TEXTS_SHOWN} more")
+        return "\n".join(lines)
+
+    def step_table(self) -> Table:
+        """The steps as a table."""
+        columns = (Column("edit"), Column("worth"))
+        rows = tuple((step.text, size_text(step.position, step.rotation)) for step in self.steps)
+        return Table(columns, rows)
+
+    def _unexplained(self) -> str:
+        lines = [
+            f"No set of usual errors found explains it (one and two in full, up to {MOST_EDITS} as far as looked)."
+        ]
+        if self.smallest is not None:
+            left = size_text(self.smallest.position_error, self.smallest.rotation_error)
+            lines.append(f"Smallest changes by least squares, which leave {left}:")
+            lines += [f"  {text}" for text in self.smallest.changes]
+        return "\n".join(lines)
+
+
+def explain(table: DHChain, b: Chain, tolerances: Tolerances) -> Explanation:
+    """Searches the usual errors that would turn the second chain into the first.
+
+    All single edits and pairs are tried, then sets of up to six from the most promising tables on. Fewer edits win; at
+    equally many all sets are reported. If no exact set of one or two is found, the same is asked at the precision of
+    the printed digits before more edits are tried.
+
+    Args:
+        table: The table to correct.
+        b: The chain that is taken to be right; as many joints.
+        tolerances: What exact agreement means.
+    """
+    printed = Tables.of(table)
+    resolution = printed_resolution(printed)
+    position, rotation = tolerances.agreement_position, tolerances.agreement_rotation
+    exact = goal_of(b, _SEARCHED_ON, np.random.default_rng(7), position, rotation)
+    coarse = replace(exact, position=max(resolution.position, position), rotation=max(resolution.rotation, rotation))
+    searches = [Search(printed, exact, table.joint_names)]
+    if coarse.position > position or coarse.rotation > rotation:
+        searches.append(Search(printed, coarse, table.joint_names))
+    poses = _poses(b, np.random.default_rng(8).uniform(-2.0, 2.0, (_CONFIRMED_ON, len(b.joints))))
+    for counts in (range(1, _FEW + 1), range(_FEW + 1, MOST_EDITS + 1)):
+        for search in searches:
+            for count in counts:
+                found = sorted(search.explanations(count), key=lambda candidate: candidate.rank)
+                confirmed = _confirmed(found, table, poses, search.goal)
+                if confirmed:
+                    steps = _steps(printed, confirmed[0][0], b)
+                    return _explanation(table, steps, [alternative for _, alternative in confirmed], search.goal, exact)
+    smallest = smallest_changes(
+        printed, goal_of(b, 4 * _SEARCHED_ON, np.random.default_rng(9), 0.0, 0.0), table.joint_names
+    )
+    return replace(_explanation(table, (), [], exact, exact), smallest=smallest)
+
+
+def _explanation(
+    table: DHChain, steps: tuple[Step, ...], alternatives: Sequence[Alternative], goal: Goal, exact: Goal
+) -> Explanation:
+    return Explanation(
+        table=table,
+        steps=steps,
+        alternatives=tuple(alternatives),
+        exact=goal is exact,
+        position_tolerance=goal.position,
+        rotation_tolerance=goal.rotation,
+        smallest=None,
+    )
+
+
+def _poses(chain: Chain, Q: Floats) -> list[tuple[Floats, object]]:
+    return [(q, chain.pose(q)) for q in Q]
+
+
+def _confirmed(
+    found: Sequence[Candidate], like: DHChain, poses: Sequence[tuple[Floats, object]], goal: Goal
+) -> list[tuple[Candidate, Alternative]]:
+    """Those whose poses, by the table's own matrix product, are the model's at configurations not searched on."""
+    confirmed, seen = [], set()
+    for candidate in found:
+        key = candidate.table.keys()[0]
+        if key in seen:
+            continue
+        seen.add(key)
+        table = candidate.table.chain(0, like)
+        pairs = [(table.pose(q), wanted) for q, wanted in poses]
+        position = max(position_distance(*pair) for pair in pairs)
+        rotation = max(rotation_distance(*pair) for pair in pairs)
+        if position <= goal.position and rotation <= goal.rotation:
+            edits, kinds = tuple(e.text for e in candidate.edits), tuple(e.kind for e in candidate.edits)
+            confirmed.append((candidate, Alternative(edits, kinds, table, position, rotation)))
+    return confirmed
+
+
+def _steps(printed: Tables, candidate: Candidate, b: Chain) -> tuple[Step, ...]:
+    """Each edit with the error that comes back without it."""
+    Q = random_configurations(b, _MEASURED_ON, np.random.default_rng(10))
+    poses = np.array([b.pose(q).homogeneous for q in Q])
+    goal = Goal(Q, poses[:, :3, :3], poses[:, :3, 3], 0.0, 0.0)
+    steps = []
+    for left_out in candidate.edits:
+        table = printed
+        for edit in candidate.edits:
+            table = table if edit is left_out else edit.change(table)
+        position, chord = errors_of(motion(table, goal.Q), goal)
+        rotation = 2.0 * np.arcsin(min(1.0, float(chord[0]) / 2.0))
+        steps.append(Step(left_out.kind, left_out.text, float(position[0]), float(rotation)))
+    return tuple(steps)
