@@ -70,7 +70,7 @@ _Direction = tuple[tuple[_Place, float], ...]
 
 
 def length_edits(
-    tables: Tables, found: Motion, goal: Goal, count: int, free: str, names: Sequence[str]
+    tables: Tables, found: Motion, goal: Goal, count: int, free: Sequence[str], names: Sequence[str]
 ) -> Iterator[tuple[Edit, ...]]:
     """Every set of `count` length edits that puts the tip of a table where the model's is.
 
@@ -79,13 +79,13 @@ def length_edits(
         found: Its motion.
         goal: What it should do.
         count: Number of edits.
-        free: "base" or "tool" if that end's translation is open anyway; it then comes first in what is yielded.
+        free: The ends ("base", "tool") whose translations are open anyway; they come first in what is yielded.
         names: Joint names.
     """
     directions = _directions(tables, found)
     columns, r = _columns(found, directions), (goal.p - found.p[0]).ravel()
     if free:
-        loose = _loose_columns(found, free)
+        loose = np.concatenate([_loose_columns(found, end) for end in free], axis=1)
         basis, _ = np.linalg.qr(loose)
         columns, r_left = columns - basis @ (basis.T @ columns), r - basis @ (basis.T @ r)
     else:
@@ -100,7 +100,7 @@ def length_edits(
         ):
             continue
         own = [_edit(directions[i], c, tables, names) for i, c in zip(chosen, amounts[loose.shape[1] :], strict=True)]
-        ends = [_end_edit(free, tables, amounts[:3])] if free else []
+        ends = [_end_edit(end, tables, amounts[3 * i : 3 * i + 3]) for i, end in enumerate(free)]
         yield (*ends, *own)
 
 
@@ -142,14 +142,15 @@ def _columns(found: Motion, directions: Sequence[_Direction]) -> Floats:
         if place not in known:
             known[place] = column(place)
     summed = [np.sum([factor * known[place] for place, factor in direction], axis=0) for direction in directions]
-    columns: Floats = np.array(summed).T.reshape(3 * S, len(directions))
-    return columns
+    moved: Floats = np.array(summed).T.reshape(3 * S, len(directions))
+    return moved
 
 
 def _loose_columns(found: Motion, end: str) -> Floats:
     if end == "base":
         return np.tile(np.eye(3), (found.p.shape[1], 1))
-    return found.R[0].reshape(-1, 3)
+    axes: Floats = found.R[0].reshape(-1, 3)
+    return axes
 
 
 def _sets(columns: Floats, r: Floats, count: int, tolerance: float) -> Iterator[tuple[int, ...]]:

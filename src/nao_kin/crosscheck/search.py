@@ -16,10 +16,11 @@ import numpy as np
 from nao_kin.crosscheck.edits import Edit, known_edits
 from nao_kin.crosscheck.lengths import length_edits
 from nao_kin.crosscheck.tables import Goal, Motion, Tables, errors_of, motion
-from nao_kin.crosscheck.turns import fitted_pairs, fitted_turns
+from nao_kin.crosscheck.turn_pairs import fitted_pairs
+from nao_kin.crosscheck.turns import fitted_turns
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from nao_kin.arrays import Floats
 
@@ -39,12 +40,12 @@ class Candidate:
     Attributes:
         table: A batch of one.
         edits: What turns the printed table into it, in the order of application.
-        free: Which end's translation is still open ("base", "tool" or "").
+        free: The ends ("base", "tool") whose translations are still open, of the last edits in their order.
     """
 
     table: Tables
     edits: tuple[Edit, ...]
-    free: str = ""
+    free: tuple[str, ...] = ()
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -97,11 +98,8 @@ class Search:
                 continue
             for edits in length_edits(candidate.table, found.take([m]), self.goal, count, candidate.free, self.names):
                 # An open end's rotation and translation are one edit.
-                before = candidate.edits[:-1] if candidate.free else candidate.edits
-                table = candidate.table
-                for edit in edits:
-                    table = edit.change(table)
-                yield Candidate(table, (*before, *edits))
+                before = candidate.edits[: len(candidate.edits) - len(candidate.free)]
+                yield Candidate(_applied(edits, candidate.table), (*before, *edits))
 
     def _level(self, d: int) -> _Level:
         while len(self.levels) <= d:
@@ -117,10 +115,9 @@ class Search:
         tables = Tables.joined([c.table for c in parents])
         fitted = self._fitted(parents, tables)
         if d == 2:
-            fitted += [
-                Candidate(table, edits)
-                for table, edits in fitted_pairs(self.levels[0].open[0].table, self.goal, self.names)
-            ]
+            start = self.levels[0].open[0]
+            for edits, free in fitted_pairs(start.table, self.goal, self.names, self.bare):
+                fitted.append(Candidate(_applied(edits, start.table), edits, free))
         turned, open_ = self._known_on(parents, tables, d)
         turned += self._new(fitted)
         turned.sort(key=lambda c: c.rank)
@@ -150,18 +147,16 @@ class Search:
     def _fitted(self, parents: Sequence[Candidate], tables: Tables) -> list[Candidate]:
         found = motion(tables, self.goal.Q)
         fitted = []
-        for m, edits, free in fitted_turns(tables, found, self.goal, self.names, self.bare):
-            table = tables.take([m])
-            for edit in edits:
-                table = edit.change(table)
-            fitted.append(Candidate(table, (*parents[m].edits, *edits), free))
+        for m, edit, free in fitted_turns(tables, found, self.goal, self.names, self.bare):
+            table = edit.change(tables.take([m]))
+            fitted.append(Candidate(table, (*parents[m].edits, edit), (free,) if free else ()))
         return fitted
 
     def _new(self, candidates: Iterator[Candidate] | Sequence[Candidate]) -> list[Candidate]:
         """Those that are no table met before."""
         new = []
         for candidate in candidates:
-            key = candidate.table.keys()[0] + candidate.free.encode()
+            key = candidate.table.keys()[0] + "".join(candidate.free).encode()
             if key not in self._seen:
                 self._seen.add(key)
                 new.append(candidate)
@@ -169,6 +164,12 @@ class Search:
 
     def _is_turned(self, tables: Tables) -> np.ndarray:
         return np.asarray(errors_of(motion(tables, self.goal.Q), self.goal)[1] <= self.goal.rotation)
+
+
+def _applied(edits: Iterable[Edit], table: Tables) -> Tables:
+    for edit in edits:
+        table = edit.change(table)
+    return table
 
 
 def _unsteadiness(found: Motion, goal: Goal) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from nao_kin.cli.bench.edges import edges
+from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.startup import startup
@@ -22,4 +23,5 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(explain)
 bench.command()(startup)
