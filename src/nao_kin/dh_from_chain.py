@@ -111,8 +111,9 @@ def _row(A: Floats, convention: Convention) -> tuple[float, float, float, float]
 
 
 def _snapped(value: float) -> float:
+    value = float(value)
     nearest = round(value, 12)
-    return nearest + 0.0 if abs(value - nearest) <= _SNAP else float(value)
+    return nearest + 0.0 if abs(value - nearest) <= _SNAP else value
 
 
 def _snapped_angle(value: float) -> float:

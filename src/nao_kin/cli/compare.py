@@ -52,6 +52,7 @@ def compare(
             raise typer.BadParameter("--read-as is for tables; a robot's model has no convention.")
         a = a.read_as(read_as.value)
     b = chain_from_spec(chain) if chain is not None else _model_of(table)
+    _same_number_of_rows(table, a, b)
     found = hold_against(a, b, samples=samples, seed=seed)
     if format is OutputFormat.json:
         report_json(comparison_data(found) | (explanation_data(found) if explain else {}))
@@ -125,6 +126,18 @@ def explanation_data(found: Comparison) -> dict[str, Any]:
         },
         "corrected": None if found.corrected is None else found.corrected.to_toml(),
     }
+
+
+def _same_number_of_rows(spec: str, a: Chain, b: Chain) -> None:
+    """A table file with too few or too many rows is refused at its last row; other chains are `compare`'s to refuse."""
+    if not spec.endswith(".toml") or len(a.joints) == len(b.joints):
+        return
+    from nao_kin.errors import TableFileError
+
+    lines = Path(spec).read_text(encoding="utf-8-sig").splitlines()
+    last = max((k for k, line in enumerate(lines, start=1) if line.split("#")[0].strip() == "[[joint]]"), default=None)
+    names = ", ".join(b.joint_names)
+    raise TableFileError(spec, last, f"row {len(a.joints)} is the last one; expected {len(b.joints)} rows ({names}).")
 
 
 def _write_corrected(found: Comparison, path: Path) -> None:

@@ -112,14 +112,18 @@ class Comparison:
 
     @cached_property
     def corrected(self) -> DHChain | None:
-        """A table that agrees with `b`; None if none was found.
+        """A table that agrees with `b`; None if none is known.
 
-        That is `a` itself if it agrees; else the first alternative; else, if there is none, `a` with the gauge applied.
+        If not `explanation.exact`, it agrees within the digits that are printed.
+
+        That is `a` itself if it agrees; else the first alternative; else, if there is none that is exact, `a` with the
+        gauge applied.
         """
         explanation = self.explanation
         if self.agrees or explanation.table is None:
             return explanation.table
-        if explanation.corrected is None and self.gauge is not None:
+        exact = explanation.exact and explanation.corrected is not None
+        if not exact and self.gauge is not None:
             return self.gauge.applied(explanation.table)
         return explanation.corrected
 

@@ -62,6 +62,7 @@ def known_edits(printed: Tables, names: Sequence[str]) -> list[Edit]:
         *_quarter_turns(names),
         *_exchanges(names),
         *_units(printed, names),
+        *_columns(),
         *_mirrors(),
         *_ends(),
     ]
@@ -141,9 +142,12 @@ def _units(printed: Tables, names: Sequence[str]) -> Iterator[Edit]:
         (1e3, "metres were given as millimetres", 0.0 < lengths.max() < _SHORTEST),
     ):
         if likely:
-            yield Edit("length unit", f"all lengths × {factor:g}: {said}", _lengths_scaled(factor, ends=True))
-            text = f"lengths of all rows × {factor:g}: {said}"
-            yield Edit("length unit", text, _lengths_scaled(factor, ends=False))
+            for which, scaled in (
+                ("all lengths", _lengths_scaled(factor, rows=True, ends=True)),
+                ("lengths of all rows", _lengths_scaled(factor, rows=True, ends=False)),
+                ("lengths of base and tool", _lengths_scaled(factor, rows=False, ends=True)),
+            ):
+                yield Edit("length unit", f"{which} × {factor:g}: {said}", scaled)
     largest = np.abs(numbers[:, [ALPHA, THETA]])
     for factor, said, likely in (
         (_DEGREE, "degrees were given as radians", largest.max() > _FULL_TURN),
@@ -151,9 +155,9 @@ def _units(printed: Tables, names: Sequence[str]) -> Iterator[Edit]:
     ):
         if likely:
             columns = {"": (ALPHA, THETA), "alpha ": (ALPHA,), "theta ": (THETA,)}
-            for which, scaled in columns.items():
+            for which, own in columns.items():
                 text = f"all {which or 'angles '}× {'π/180' if factor < 1.0 else '180/π'}: {said}"
-                yield Edit("angle unit", text, _columns_scaled(scaled, factor))
+                yield Edit("angle unit", text, _columns_scaled(own, factor))
     for k, column in itertools.product(range(len(names)), (ALPHA, THETA)):
         for factor, said, likely in (
             (_DEGREE, "given in degrees", abs(numbers[k, column]) > _FULL_TURN),
@@ -164,13 +168,21 @@ def _units(printed: Tables, names: Sequence[str]) -> Iterator[Edit]:
                 yield Edit("angle unit", text, _scaled(k, column, factor))
 
 
+def _columns() -> Iterator[Edit]:
+    for column, name in enumerate(COLUMNS):
+        yield Edit("column sign", f"{name} of all rows with the other sign", _columns_scaled((column,), -1.0))
+    yield Edit("column sign", "all joint values with the other sign", lambda t: replace(t, signs=-t.signs))
+
+
 def _mirrors() -> Iterator[Edit]:
-    for axis, plane in ((1, "xz"), (0, "yz"), (2, "xy")):
+    for (axis, plane), keep in itertools.product(((1, "xz"), (0, "yz"), (2, "xy")), (True, False)):
 
-        def mirrored(t: Tables, axis: int = axis) -> Tables:
-            return _mirrored(t, axis)
+        def mirrored(t: Tables, axis: int = axis, keep: bool = keep) -> Tables:
+            return _mirrored(t, axis, keep_senses=keep)
 
-        yield Edit("mirrored side", f"mirror the whole chain at the base's {plane} plane", mirrored, weight=1)
+        senses = "joints turning about the directions they had" if keep else "and the senses of its joints"
+        text = f"mirror the whole chain at the base's {plane} plane, {senses}"
+        yield Edit("mirrored side", text, mirrored, weight=1)
 
 
 def _ends() -> Iterator[Edit]:
@@ -221,12 +233,10 @@ def _columns_scaled(columns: Sequence[int], factor: float) -> Change:
     return lambda t: replace(t, numbers=t.numbers * factors)
 
 
-def _lengths_scaled(factor: float, *, ends: bool) -> Change:
-    rows = _columns_scaled((A, D), factor)
-    if not ends:
-        return rows
+def _lengths_scaled(factor: float, *, rows: bool, ends: bool) -> Change:
+    of_rows, of_ends = _columns_scaled((A, D), factor if rows else 1.0), factor if ends else 1.0
     return lambda t: replace(
-        rows(t), base_translation=factor * t.base_translation, tool_translation=factor * t.tool_translation
+        of_rows(t), base_translation=of_ends * t.base_translation, tool_translation=of_ends * t.tool_translation
     )
 
 
@@ -242,23 +252,24 @@ def _permuted(i: int, j: int, first: Sequence[int], second: Sequence[int]) -> Ch
     return changed
 
 
-def _mirrored(t: Tables, axis: int) -> Tables:
+def _mirrored(t: Tables, axis: int, *, keep_senses: bool) -> Tables:
     """The same arm on the other side: T(q) becomes M T(S q) M.
 
     M reverses one axis of base and tip. Each inner frame is mirrored at its own xz plane, which turns α and θ round and
-    leaves a and d. S lets each joint turn about the direction nearest to the one it had, as on the two arms of a
-    robot; a joint half way between keeps its sense against the mirror.
+    leaves a and d. Where senses are kept, S lets each joint turn about the direction nearest to the one it had, as on
+    the two arms of a robot, and a joint half way between turns as its mirror image does; else S is the identity.
     """
     M, inner = np.eye(3), np.diag([1.0, -1.0, 1.0])
     M[axis, axis] = -1.0
     directions = motion(t, np.zeros((1, len(t.slides)))).z[:, 0] * t.signs[:, :, None]
     turned = np.where(t.slides[:, None], 1.0, -1.0) * (directions @ M)  # an axis of rotation mirrors the other way
-    keep = np.where(np.einsum("mki,mki->mk", turned, directions) < -1e-9, -1.0, 1.0)
+    against = np.einsum("mki,mki->mk", turned, directions) < -1e-9
+    senses = np.where(against & keep_senses, -1.0, 1.0)
     own = np.where(t.slides, 1.0, -1.0)
     return replace(
         t,
         numbers=t.numbers * np.array([1.0, -1.0, 1.0, -1.0]),
-        signs=t.signs * own * keep,
+        signs=t.signs * own * senses,
         base_rotation=M @ t.base_rotation @ inner,
         base_translation=t.base_translation @ M,
         tool_rotation=inner @ t.tool_rotation @ M,

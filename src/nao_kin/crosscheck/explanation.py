@@ -9,7 +9,7 @@ import numpy as np
 
 from nao_kin.chain import random_configurations
 from nao_kin.crosscheck.precision import printed_resolution
-from nao_kin.crosscheck.search import MOST_EDITS, Candidate, Search
+from nao_kin.crosscheck.search import MOST_EDITS, Candidate, Search, applied
 from nao_kin.crosscheck.smallest import SmallestChanges, smallest_changes
 from nao_kin.crosscheck.tables import Goal, Tables, errors_of, goal_of, motion
 from nao_kin.crosscheck.wording import size_text
@@ -18,6 +18,8 @@ from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    import pinocchio as pin
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
@@ -30,7 +32,9 @@ _SEARCHED_ON: Final = 6  # configurations: 36 numbers, more than any table has u
 _CONFIRMED_ON: Final = 24
 _MEASURED_ON: Final = 200
 _FEW: Final = 2
-_TEXTS_SHOWN: Final = 5
+_MARGIN: Final = 0.8  # of a tolerance that is not rounding: other configurations may be a little worse than those seen
+_SETS_SHOWN: Final = 5
+_CHANGES_SHOWN: Final = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +88,8 @@ class Explanation:
         steps: The edits of the first alternative, with what each is worth.
         alternatives: Every set of equally few edits that was found and that both chains' own poses confirm, the least
             far-fetched first; empty if nothing explains the disagreement.
-        exact: Whether the alternatives agree to rounding; else they agree as well as the printed digits can say.
+        exact: Whether the alternatives agree to rounding; else they agree as well as the printed digits can say, maybe
+            with no edit at all.
         position_tolerance: What "agree" means for them [m].
         rotation_tolerance: The same [rad].
         smallest: The smallest changes of all numbers, where there is no alternative.
@@ -118,16 +123,17 @@ class Explanation:
             return self._unexplained()
         first = self.alternatives[0]
         left = size_text(first.position_error, first.rotation_error)
-        how = "" if self.exact else f", which is within the digits printed ({self.position_tolerance * 1e3:.2g} mm),"
-        lines = [f"Agrees to {left}{how} after:"]
+        digits = size_text(self.position_tolerance, self.rotation_tolerance)
+        how = "" if self.exact else f", within what the digits printed can say ({digits})"
+        if not first.edits:
+            return f"Agrees as it stands to {left}{how}."
+        lines = [f"Agrees to {left}{how}, after:"]
         lines += [f"  {step}" for step in self.steps]
         others = self.alternatives[1:]
         if others:
             count = f"{len(others)} other set{'s' if len(others) > 1 else ''} of {len(first.edits)}"
             lines.append(f"or after any of {count}:")
-            lines += [f"  {other}" for other in others[:_TEXTS_SHOWN]]
-        if len(others) > _TEXTS_SHOWN:
-            lines.append(f"  … and {len(others) - _TEXTS_SHOWN} more")
+            lines += _listed([str(other) for other in others], _SETS_SHOWN)
         return "\n".join(lines)
 
     def step_table(self) -> Table:
@@ -138,12 +144,13 @@ class Explanation:
 
     def _unexplained(self) -> str:
         lines = [
-            f"No set of usual errors found explains it (one and two in full, up to {MOST_EDITS} as far as looked)."
+            "No set of usual errors was found that explains it: not one, no two of the known slips, and none of up to "
+            f"{MOST_EDITS} where the search looked."
         ]
         if self.smallest is not None:
             left = size_text(self.smallest.position_error, self.smallest.rotation_error)
-            lines.append(f"Smallest changes by least squares, which leave {left}:")
-            lines += [f"  {text}" for text in self.smallest.changes]
+            lines.append(f"The smallest changes that a least-squares fit found leave {left}:")
+            lines += _listed(self.smallest.changes, _CHANGES_SHOWN)
         return "\n".join(lines)
 
 
@@ -168,11 +175,15 @@ def explain(table: DHChain, b: Chain, tolerances: Tolerances) -> Explanation:
     if coarse.position > position or coarse.rotation > rotation:
         searches.append(Search(printed, coarse, table.joint_names))
     poses = _poses(b, np.random.default_rng(8).uniform(-2.0, 2.0, (_CONFIRMED_ON, len(b.joints))))
-    for counts in (range(1, _FEW + 1), range(_FEW + 1, MOST_EDITS + 1)):
+    for counts in (range(_FEW + 1), range(_FEW + 1, MOST_EDITS + 1)):
         for search in searches:
             for count in counts:
                 found = sorted(search.explanations(count), key=lambda candidate: candidate.rank)
-                confirmed = _confirmed(found, table, poses, search.goal)
+                found = [_as_read(candidate, printed) for candidate in found]
+                margin = 1.0 if search.goal is exact else _MARGIN
+                confirmed = _confirmed(
+                    found, table, poses, margin * search.goal.position, margin * search.goal.rotation
+                )
                 if confirmed:
                     steps = _steps(printed, confirmed[0][0], b)
                     return _explanation(table, steps, [alternative for _, alternative in confirmed], search.goal, exact)
@@ -196,12 +207,28 @@ def _explanation(
     )
 
 
-def _poses(chain: Chain, Q: Floats) -> list[tuple[Floats, object]]:
+def _listed(texts: Sequence[str], shown: int) -> list[str]:
+    more = len(texts) - shown
+    return [*(f"  {text}" for text in texts[:shown]), *([f"  … and {more} more"] if more > 0 else [])]
+
+
+def _as_read(candidate: Candidate, printed: Tables) -> Candidate:
+    """The candidate with its convention said first, where the order makes no difference."""
+    edits = tuple(sorted(candidate.edits, key=lambda edit: edit.kind != "convention"))
+    same = applied(edits, printed).keys() == candidate.table.keys()
+    return replace(candidate, edits=edits) if same else candidate
+
+
+def _poses(chain: Chain, Q: Floats) -> list[tuple[Floats, pin.SE3]]:
     return [(q, chain.pose(q)) for q in Q]
 
 
 def _confirmed(
-    found: Sequence[Candidate], like: DHChain, poses: Sequence[tuple[Floats, object]], goal: Goal
+    found: Sequence[Candidate],
+    like: DHChain,
+    poses: Sequence[tuple[Floats, pin.SE3]],
+    position_limit: float,
+    rotation_limit: float,
 ) -> list[tuple[Candidate, Alternative]]:
     """Those whose poses, by the table's own matrix product, are the model's at configurations not searched on."""
     confirmed, seen = [], set()
@@ -214,7 +241,7 @@ def _confirmed(
         pairs = [(table.pose(q), wanted) for q, wanted in poses]
         position = max(position_distance(*pair) for pair in pairs)
         rotation = max(rotation_distance(*pair) for pair in pairs)
-        if position <= goal.position and rotation <= goal.rotation:
+        if position <= position_limit and rotation <= rotation_limit:
             edits, kinds = tuple(e.text for e in candidate.edits), tuple(e.kind for e in candidate.edits)
             confirmed.append((candidate, Alternative(edits, kinds, table, position, rotation)))
     return confirmed
@@ -227,9 +254,7 @@ def _steps(printed: Tables, candidate: Candidate, b: Chain) -> tuple[Step, ...]:
     goal = Goal(Q, poses[:, :3, :3], poses[:, :3, 3], 0.0, 0.0)
     steps = []
     for left_out in candidate.edits:
-        table = printed
-        for edit in candidate.edits:
-            table = table if edit is left_out else edit.change(table)
+        table = applied([edit for edit in candidate.edits if edit is not left_out], printed)
         position, chord = errors_of(motion(table, goal.Q), goal)
         rotation = 2.0 * np.arcsin(min(1.0, float(chord[0]) / 2.0))
         steps.append(Step(left_out.kind, left_out.text, float(position[0]), float(rotation)))

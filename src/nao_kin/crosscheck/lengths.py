@@ -108,7 +108,7 @@ def _directions(tables: Tables, found: Motion) -> list[_Direction]:
     n = len(tables.slides)
     rows = [_Place("row", k, c) for k in range(n) for c in (A, D)]
     ends = [_Place(end, -1, c) for end in ("base", "tool") for c in range(3)]
-    singles: list[_Direction] = [((place, 1.0),) for place in (*rows, *ends)]
+    singles: list[_Direction] = [((place, 1.0),) for place in (*ends, *rows)]
     empty = [place for place in rows if abs(place.value(tables)) < _SAME]
     full = [place for place in ends[:3] if abs(place.value(tables)) > _SAME]
     # An amount can only be told from where it went if the two places move the tip differently.
@@ -141,7 +141,7 @@ def _columns(found: Motion, directions: Sequence[_Direction]) -> Floats:
     for place, _ in itertools.chain.from_iterable(directions):
         if place not in known:
             known[place] = column(place)
-    summed = [np.sum([factor * known[place] for place, factor in direction], axis=0) for direction in directions]
+    summed = [sum(factor * known[place] for place, factor in direction) for direction in directions]
     moved: Floats = np.array(summed).T.reshape(3 * S, len(directions))
     return moved
 

@@ -17,6 +17,7 @@ __all__ = ["Resolution", "printed_resolution"]
 
 _FINEST_DIGIT = 6  # decimals of a metre, radian or degree; what needs more was computed, not printed
 _EXACT_ANGLES = math.pi / 12
+_COARSEST = 0.01  # [m, rad] nobody prints less: such round numbers are round, or in another unit than is said
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +41,8 @@ def printed_resolution(table: Tables) -> Resolution:
     """The resolution of a table, read off its numbers.
 
     All lengths are taken to be printed to the decimal of the one with the most. Multiples of 15° are exact; other
-    angles were printed in degrees or radians, whichever they have few decimals in. More than six decimals are no print:
-    such numbers count as exact.
+    angles were printed in degrees or radians, whichever they have few decimals in. More than six decimals are no print,
+    nor are fewer than two: such numbers count as exact.
 
     Args:
         table: A batch of one.
@@ -54,9 +55,8 @@ def printed_resolution(table: Tables) -> Resolution:
     ]
     angles = [x for x in numbers[:, [ALPHA, THETA]].ravel() if not _is_multiple(x, _EXACT_ANGLES)]
     length = _last_digit(lengths)
-    in_degrees = math.radians(_last_digit(math.degrees(x) for x in angles))
-    in_radians = _last_digit(angles)
-    angle = max(in_degrees, in_radians)
+    angle = max(math.radians(_last_digit(math.degrees(x) for x in angles)), _last_digit(angles))
+    length, angle = (unit if unit <= _COARSEST else 0.0 for unit in (length, angle))
     rotation = 0.5 * angle * len(angles)
     position = 0.5 * length * len(lengths) + rotation * float(np.abs(lengths).sum() if lengths else 0.0)
     return Resolution(length, angle, position, rotation)

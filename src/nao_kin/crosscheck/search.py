@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
 
-__all__ = ["MOST_EDITS", "Candidate", "Search"]
+__all__ = ["MOST_EDITS", "Candidate", "Search", "applied"]
 
 MOST_EDITS: Final = 6
-_BEAM: Final = 60  # tables of a level from which the next one is built, from the third level on
+_BEAM: Final = 120  # tables of a level from which the next one is built, from the third level on
 _FIRST_LOOK: Final = 2  # configurations that rule out most tables
 _ASKED: Final = {0: 100_000, 1: 4000, 2: 200, 3: 60, 4: 4}
 """How many tables of a level are asked for sets of so many lengths: the larger the sets, the dearer the question."""
@@ -99,7 +99,7 @@ class Search:
             for edits in length_edits(candidate.table, found.take([m]), self.goal, count, candidate.free, self.names):
                 # An open end's rotation and translation are one edit.
                 before = candidate.edits[: len(candidate.edits) - len(candidate.free)]
-                yield Candidate(_applied(edits, candidate.table), (*before, *edits))
+                yield Candidate(applied(edits, candidate.table), (*before, *edits))
 
     def _level(self, d: int) -> _Level:
         while len(self.levels) <= d:
@@ -117,7 +117,7 @@ class Search:
         if d == 2:
             start = self.levels[0].open[0]
             for edits, free in fitted_pairs(start.table, self.goal, self.names, self.bare):
-                fitted.append(Candidate(_applied(edits, start.table), edits, free))
+                fitted.append(Candidate(applied(edits, start.table), edits, free))
         turned, open_ = self._known_on(parents, tables, d)
         turned += self._new(fitted)
         turned.sort(key=lambda c: c.rank)
@@ -166,7 +166,8 @@ class Search:
         return np.asarray(errors_of(motion(tables, self.goal.Q), self.goal)[1] <= self.goal.rotation)
 
 
-def _applied(edits: Iterable[Edit], table: Tables) -> Tables:
+def applied(edits: Iterable[Edit], table: Tables) -> Tables:
+    """The table after the edits, in their order."""
     for edit in edits:
         table = edit.change(table)
     return table
