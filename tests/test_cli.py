@@ -132,9 +132,9 @@ def test_compare_explains(tmp_path: Path) -> None:
     ("change", "said"),
     [
         (("alpha =", "alpa ="), "bad.toml:7: unknown key 'alpa'"),
-        (("d = 0.105", 'd = "long"'), "bad.toml:23: d"),
-        (("d = 0.105", ""), "bad.toml:19: [[joint]] 3: d missing"),
-        (("d = 0.105", "d = nan"), "bad.toml:23: d"),
+        (("d = 0.105", 'd = "long"'), "bad.toml:20: d"),
+        (("d = 0.105", ""), "bad.toml:17: [[joint]] 3: d missing"),
+        (("d = 0.105", "d = nan"), "bad.toml:20: d"),
         (('lengths = "m"', 'lengths = "feet"'), "bad.toml:3: lengths: expected m or mm"),
         (("[[joint]]", "[[joint]]\na = 0\nalpha = 0\nd = 0\ntheta = 0\n[[joint]]"), "expected 4 rows (LShoulderPitch"),
     ],

@@ -92,12 +92,13 @@ class Comparison:
 
         The edits are those of a DH table: of `a`, or of `to_dh(a, "modified")` if it is no table.
         """
+        note, table = "They agree exactly as given.", None
         try:
             table = self.a if isinstance(self.a, DHChain) else to_dh(self.a, "modified")
         except InvalidInputError as error:
-            return Explanation.without_search(None, self.tolerances, f"Not explained: {error}")
-        if self.agrees:
-            return Explanation.without_search(table, self.tolerances, "They agree exactly as given.")
+            note = note if self.agrees else f"Not explained: {error}"
+        if self.agrees or table is None:
+            return Explanation.without_search(table, self.tolerances, note)
         return explain(table, self.b, self.tolerances)
 
     @property

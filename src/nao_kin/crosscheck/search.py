@@ -48,9 +48,10 @@ class Candidate:
     free: tuple[str, ...] = ()
 
     @property
-    def rank(self) -> tuple[int, int]:
-        """Fewest edits first, then the least far-fetched."""
-        return len(self.edits), sum(edit.weight for edit in self.edits)
+    def rank(self) -> tuple[int, int, int]:
+        """Fewest edits first, then the least far-fetched, then wrong numbers before missing ones."""
+        dropped = sum(edit.kind == "dropped offset" for edit in self.edits)
+        return len(self.edits), sum(edit.weight for edit in self.edits), dropped
 
 
 @dataclass(frozen=True, eq=False, slots=True)
