@@ -17,7 +17,7 @@ from nao_kin.se3 import position_distance, rotation_distance
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import pinocchio as pin
 
@@ -155,7 +155,7 @@ class Explanation:
 
 
 def explain(table: DHChain, b: Chain, tolerances: Tolerances) -> Explanation:
-    """Searches the usual errors that would turn the second chain into the first.
+    """Searches the usual errors that would account for what a table and a chain disagree in.
 
     All single edits and pairs are tried, then sets of up to six from the most promising tables on. Fewer edits win; at
     equally many all sets are reported. If no exact set of one or two is found, the same is asked at the precision of
@@ -166,45 +166,36 @@ def explain(table: DHChain, b: Chain, tolerances: Tolerances) -> Explanation:
         b: The chain that is taken to be right; as many joints.
         tolerances: What exact agreement means.
     """
-    printed = Tables.of(table)
-    resolution = printed_resolution(printed)
+    printed, names = Tables.of(table), table.joint_names
     position, rotation = tolerances.agreement_position, tolerances.agreement_rotation
     exact = goal_of(b, _SEARCHED_ON, np.random.default_rng(7), position, rotation)
-    coarse = replace(exact, position=max(resolution.position, position), rotation=max(resolution.rotation, rotation))
-    searches = [Search(printed, exact, table.joint_names)]
-    if coarse.position > position or coarse.rotation > rotation:
-        searches.append(Search(printed, coarse, table.joint_names))
-    poses = _poses(b, np.random.default_rng(8).uniform(-2.0, 2.0, (_CONFIRMED_ON, len(b.joints))))
+    poses = [(q, b.pose(q)) for q in np.random.default_rng(8).uniform(-2.0, 2.0, (_CONFIRMED_ON, len(b.joints)))]
+    for search, count in _rounds(printed, exact, names):
+        goal, margin = search.goal, 1.0 if search.goal is exact else _MARGIN
+        found = sorted(search.explanations(count), key=lambda candidate: candidate.rank)
+        found = [_as_read(candidate, printed) for candidate in found]
+        confirmed = _confirmed(found, table, poses, margin * goal.position, margin * goal.rotation)
+        if confirmed:
+            steps, alternatives = _steps(printed, confirmed[0][0], b), tuple(one for _, one in confirmed)
+            return Explanation(table, steps, alternatives, goal is exact, goal.position, goal.rotation, None)
+    many = goal_of(b, 4 * _SEARCHED_ON, np.random.default_rng(9), 0.0, 0.0)
+    return Explanation(table, (), (), True, position, rotation, smallest_changes(printed, many, names))
+
+
+def _rounds(printed: Tables, exact: Goal, names: Sequence[str]) -> Iterator[tuple[Search, int]]:
+    """What is asked, in order: few edits exactly, few edits within the printed digits, then more of both."""
+    resolution = printed_resolution(printed)
+    coarse = replace(
+        exact,
+        position=max(resolution.position, exact.position),
+        rotation=max(resolution.rotation, exact.rotation),
+    )
+    goals = [exact]
+    if coarse.position > exact.position or coarse.rotation > exact.rotation:
+        goals.append(coarse)
+    searches = [Search(printed, goal, names) for goal in goals]
     for counts in (range(_FEW + 1), range(_FEW + 1, MOST_EDITS + 1)):
-        for search in searches:
-            for count in counts:
-                found = sorted(search.explanations(count), key=lambda candidate: candidate.rank)
-                found = [_as_read(candidate, printed) for candidate in found]
-                margin = 1.0 if search.goal is exact else _MARGIN
-                confirmed = _confirmed(
-                    found, table, poses, margin * search.goal.position, margin * search.goal.rotation
-                )
-                if confirmed:
-                    steps = _steps(printed, confirmed[0][0], b)
-                    return _explanation(table, steps, [alternative for _, alternative in confirmed], search.goal, exact)
-    smallest = smallest_changes(
-        printed, goal_of(b, 4 * _SEARCHED_ON, np.random.default_rng(9), 0.0, 0.0), table.joint_names
-    )
-    return replace(_explanation(table, (), [], exact, exact), smallest=smallest)
-
-
-def _explanation(
-    table: DHChain, steps: tuple[Step, ...], alternatives: Sequence[Alternative], goal: Goal, exact: Goal
-) -> Explanation:
-    return Explanation(
-        table=table,
-        steps=steps,
-        alternatives=tuple(alternatives),
-        exact=goal is exact,
-        position_tolerance=goal.position,
-        rotation_tolerance=goal.rotation,
-        smallest=None,
-    )
+        yield from ((search, count) for search in searches for count in counts)
 
 
 def _listed(texts: Sequence[str], shown: int) -> list[str]:
@@ -217,10 +208,6 @@ def _as_read(candidate: Candidate, printed: Tables) -> Candidate:
     edits = tuple(sorted(candidate.edits, key=lambda edit: edit.kind != "convention"))
     same = applied(edits, printed).keys() == candidate.table.keys()
     return replace(candidate, edits=edits) if same else candidate
-
-
-def _poses(chain: Chain, Q: Floats) -> list[tuple[Floats, pin.SE3]]:
-    return [(q, chain.pose(q)) for q in Q]
 
 
 def _confirmed(
