@@ -82,7 +82,7 @@ def length_edits(
         free: The ends ("base", "tool") whose translations are open anyway; they come first in what is yielded.
         names: Joint names.
     """
-    directions = _directions(tables, found)
+    directions = _directions(tables)
     columns, r = _columns(found, directions), (goal.p - found.p[0]).ravel()
     if free:
         loose = np.concatenate([_loose_columns(found, end) for end in free], axis=1)
@@ -93,35 +93,35 @@ def length_edits(
     for chosen in _sets(columns, r_left, count, goal.position):
         parts = np.concatenate([loose, _columns(found, [directions[i] for i in chosen])], axis=1)
         amounts = np.linalg.lstsq(parts, r, rcond=None)[0]
-        left = (r - parts @ amounts).reshape(-1, 3)
-        if (
-            np.linalg.norm(left, axis=1).max() > goal.position
-            or np.abs(amounts[loose.shape[1] :]).min(initial=1.0) < _SAME
-        ):
+        far = np.linalg.norm((r - parts @ amounts).reshape(-1, 3), axis=1).max()
+        changes = [(directions[i], float(c)) for i, c in zip(chosen, amounts[loose.shape[1] :], strict=True)]
+        if far > goal.position or any(abs(c) < _SAME or _splits(way, c, tables, found) for way, c in changes):
             continue
-        own = [_edit(directions[i], c, tables, names) for i, c in zip(chosen, amounts[loose.shape[1] :], strict=True)]
+        own = [_edit(way, c, tables, names) for way, c in changes]
         ends = [_end_edit(end, tables, amounts[3 * i : 3 * i + 3]) for i, end in enumerate(free)]
         yield (*ends, *own)
 
 
-def _directions(tables: Tables, found: Motion) -> list[_Direction]:
+def _directions(tables: Tables) -> list[_Direction]:
     n = len(tables.slides)
     rows = [_Place("row", k, c) for k in range(n) for c in (A, D)]
     ends = [_Place(end, -1, c) for end in ("base", "tool") for c in range(3)]
     singles: list[_Direction] = [((place, 1.0),) for place in (*ends, *rows)]
     empty = [place for place in rows if abs(place.value(tables)) < _SAME]
     full = [place for place in ends[:3] if abs(place.value(tables)) > _SAME]
-    # An amount can only be told from where it went if the two places move the tip differently.
     folds: list[_Direction] = [
-        ((base, -sign), (row, 1.0))
-        for base, row, sign in itertools.product(full, empty, (1.0, -1.0))
-        if not _moves_along(found, base, row)
+        ((base, -sign), (row, 1.0)) for base, row, sign in itertools.product(full, empty, (1.0, -1.0))
     ]
     return [*singles, *folds]
 
 
-def _moves_along(found: Motion, base: _Place, row: _Place) -> bool:
-    """Whether a row's length always lies along a base axis."""
+def _splits(direction: _Direction, amount: float, tables: Tables, found: Motion) -> bool:
+    """Whether an amount is shared out between two places that move the tip alike, which no error looks like."""
+    if len(direction) == 1:
+        return False
+    (base, factor), (row, _) = direction
+    if abs(base.value(tables) + factor * amount) < _SAME:
+        return False  # all of it went from one to the other
     along = (found.x if row.column == A else found.z)[0, :, row.row, base.column]
     return bool(np.abs(along).min() > 1.0 - _SAME)
 
