@@ -259,6 +259,13 @@ def test_without_the_extra_the_jaco2_is_measured(monkeypatch: pytest.MonkeyPatch
     assert len(missing) == 3
 
 
+def test_planted_errors_are_explained() -> None:
+    data = data_of("explain", "--singles", "10", "--doubles", "3", "--seed", "1")
+    assert missed(data, "slowest") == []
+    assert sum(row["tables"] for row in data["one_error"]) == 10
+    assert sum(row["tables"] for row in data["two_errors"]) == 6
+
+
 def test_times_are_taken_in_turns() -> None:
     called: list[str] = []
     jobs = {"a": lambda: called.append("a"), "b": lambda: called.append("b")}

@@ -69,6 +69,18 @@ def test_the_documented_table_loads(tmp_path: Path) -> None:
     assert (table.base_name, table.tip_name) == ("torso", "hand")
 
 
+def test_the_documented_comparisons_run(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "dh-table.md").read_text(encoding="utf-8")
+    printed = ""
+    for block in blocks(page, "python"):
+        done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        printed += done.stdout
+    (shown,) = blocks(page, "text")
+    for line in shown.splitlines()[1:]:  # the first one says how far rounding goes
+        assert line in printed.splitlines()
+
+
 def test_the_version_is_said_once() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["version"] == nk.__version__

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
+    from nao_kin.dh_from_chain import to_dh as to_dh
     from nao_kin.dh_row import DHRow as DHRow
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
@@ -86,6 +87,7 @@ _HOME = {
     "solve_all_batch": "analytic.batch",
     "solve_batch": "ik.batch",
     "solve_tree": "ik.tree",
+    "to_dh": "dh_from_chain",
 }
 
 __all__ = list(_HOME)

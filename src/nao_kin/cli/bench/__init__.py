@@ -6,6 +6,7 @@ import typer
 
 from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
+from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
@@ -26,6 +27,7 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(explain)
 bench.command()(methods)
 bench.command()(practicum)
 bench.command()(closed)
