@@ -34,6 +34,7 @@ def compare(
         bool, typer.Option("--explain", help="Search the usual errors that would account for it.")
     ] = False,
     corrected: Annotated[Path | None, typer.Option(help="Write a table that agrees to this TOML file.")] = None,
+    html: Annotated[str | None, typer.Option(help="Write a page that shows both, where they differ most.")] = None,
     samples: Annotated[int, typer.Option(min=1, help="Random configurations.")] = 1000,
     seed: Annotated[int, typer.Option(help="Seed of the random configurations.")] = 0,
     format: FormatOption = OutputFormat.text,
@@ -58,6 +59,10 @@ def compare(
         report_json(comparison_data(found) | (explanation_data(found) if explain else {}))
     else:
         report(found.table(), *(["", str(found.explanation)] if explain else []))
+    if html is not None:
+        from nao_kin.view.export import export_comparison
+
+        typer.echo(f"wrote {export_comparison(html, found, explain=explain)}", err=True)
     if corrected is not None:
         _write_corrected(found, corrected)
     if not found.agrees:
