@@ -225,6 +225,12 @@ def test_chains_that_do_not_belong_together_are_refused() -> None:
     for chains, words in names:
         with pytest.raises(ValueError, match=words):
             nk.Tree.of_chains(chains)
+    for bad in (left, [left, None], "LArm"):
+        with pytest.raises(ValueError, match="chains of a tree"):
+            nk.Tree.of_chains(bad)  # type: ignore[arg-type]
+    for tips in (5, None, ["LArm", None], "LArm"):
+        with pytest.raises(ValueError, match="a list of frames"):
+            nao.tree("torso", tips)  # type: ignore[arg-type]
 
 
 def with_first(table: nk.DHChain, **changes: object) -> nk.DHChain:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.urdf_path import Coupling, couplings_on
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     import pinocchio as pin
     from numpy.typing import ArrayLike, NDArray
@@ -171,7 +172,7 @@ class Tree:
         Raises:
             UnknownNameError: It is none; carries near matches.
         """
-        if tip not in self.chains:
+        if not isinstance(tip, str) or tip not in self.chains:
             raise UnknownNameError("tip", tip, self.chains, self.name)
 
     @cached_property
@@ -184,7 +185,11 @@ class Tree:
 
 def _by_tip(chains: Iterable[Chain]) -> dict[str, Chain]:
     by_tip: dict[str, Chain] = {}
+    if not isinstance(chains, Iterable):
+        raise InvalidInputError("chains of a tree", "a list of chains", repr(chains)[:60])
     for chain in chains:
+        if not hasattr(chain, "joint_path"):
+            raise InvalidInputError("chains of a tree", "chains only", repr(chain)[:60])
         if chain.tip_name in by_tip:
             raise InvalidInputError("tips", "each tip once", f"{chain.tip_name!r} twice")
         by_tip[chain.tip_name] = chain

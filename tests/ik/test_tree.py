@@ -259,6 +259,9 @@ def test_a_trace_has_a_column_for_every_target(rng: np.random.Generator) -> None
     wish["Head"] = nk.Target.orientation(np.eye(3))
     trace = solve_tree(tree, wish, trace=True).trace
     rows = len(trace.q)
+    assert not any(
+        array.flags.writeable for array in (trace.q, trace.position_error, trace.rotation_error, trace.start)
+    )
     assert trace.position_error.shape == trace.rotation_error.shape == (rows, 3)
     assert np.isnan(trace.position_error[:, 2]).all()
     assert np.isnan(trace.rotation_error[:, :2]).all()
@@ -294,11 +297,21 @@ def test_no_task_moves_those_before_it(rng: np.random.Generator) -> None:
             assert (step[ends == 2] <= 0.0).all()
 
 
+def test_an_error_whose_square_is_infinite_does_not_disturb_the_other_hand() -> None:
+    tree = robot("nao").tree("l_sole", HANDS)
+    wish = {"LArm": nk.Target.position([1e200, 1e200, 0.0], {"z": 0.0}), "RArm": [0.15, -0.15, 0.45]}
+    result = solve_tree(tree, wish, priority=["RArm"], budget=FEW)
+    assert not result.solved
+    assert result.missed == ("LArm",)
+
+
 def test_bad_questions_are_refused() -> None:
     tree = robot("nao").tree("torso", HANDS)
     p = [0.1, 0.1, 0.1]
     with pytest.raises(KeyError, match="Did you mean 'LArm'"):
         solve_tree(tree, {"Larm": p})
+    with pytest.raises(KeyError, match="no tip"):
+        solve_tree(tree, {"LArm": p}, priority=[["LArm"]])  # type: ignore[list-item]
     with pytest.raises(KeyError, match="method 'ml'"):
         solve_tree(tree, {"LArm": p}, method="ml")
     bad: list[tuple[object, dict[str, object], str]] = [
@@ -311,6 +324,8 @@ def test_bad_questions_are_refused() -> None:
         ({"LArm": p}, {"priority": "LArm"}, "a list of tips"),
         ({"LArm": p}, {"priority": ["LArm", "LArm"]}, "each tip once"),
         ({"LArm": p}, {"weights": {"LArm": 0.0}}, "weight of LArm"),
+        ({"LArm": p}, {"weights": {"LArm": 10**400}}, "weight of LArm"),
+        ({"LArm": p}, {"parameters": 5}, "numbers by name"),
         ({"LArm": p}, {"weights": {"RArm": 1.0}}, "tips that have a target"),
         ({"LArm": p}, {"seed": -1}, "seed"),
     ]

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from nao_kin.arrays import positive
 from nao_kin.chain import configuration, neutral, random_configurations
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.catalogue import METHODS, method_named
-from nao_kin.ik.loop import Budget, Update
+from nao_kin.ik.loop import Budget, Update, require_options
 from nao_kin.ik.scales import scales_of
 from nao_kin.ik.target import Target
 from nao_kin.ik.tree_aim import aims_of
@@ -74,6 +75,7 @@ def solve_tree(
         UnknownNameError: No such tip or method, or the start names a joint that does not exist; carries near matches.
     """
     _require_tree(tree)
+    require_options(budget, tolerances)
     wanted = _targets(tree, targets)
     levels = _levels(tree, wanted, priority)
     problem = TreeProblem(tree, wanted, _weights(tree, levels, weights), levels, tolerances)
@@ -125,13 +127,12 @@ def _weights(tree: Tree, levels: Sequence[Sequence[str]], weights: Mapping[str, 
     given = {} if weights is None else weights
     if not isinstance(given, Mapping):
         raise InvalidInputError("weights", "numbers by tip name, as {'LArm': 2.0}", repr(weights)[:60])
-    for tip, weight in given.items():
+    for tip in given:
         tree.require_tip(tip)
         if not any(tip in level for level in levels):
             raise InvalidInputError("weights", "tips that have a target", repr(tip))
-        if isinstance(weight, bool) or not isinstance(weight, (int, float, np.number)) or not 0.0 < weight < np.inf:
-            raise InvalidInputError(f"weight of {tip}", "a finite number > 0", repr(weight))
-    every = {tip: float(given.get(tip, 1.0)) for level in levels for tip in level}
+    checked = {tip: positive(weight, f"weight of {tip}") for tip, weight in given.items()}
+    every = {tip: checked.get(tip, 1.0) for level in levels for tip in level}
     return {tip: every[tip] / max(every[other] for other in level) for level in levels for tip in level}
 
 

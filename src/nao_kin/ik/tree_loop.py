@@ -56,6 +56,7 @@ SLACK: Final = 1e-6
 """Relative change of a squared error that counts as none, so that tips in second place may still improve."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a huge error's square is infinite; the loop copes with that
 def run_tree(
     problem: TreeProblem, method: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool
 ) -> TreeRun:

@@ -53,7 +53,7 @@ def methods(
         _sheet("easy", f"near targets, one start, up to 5000 iterations; {targets} each", easy),
         _sheet("alone", "full range, one start, up to 5000 iterations", alone),
         _sheet("restarts", "full range, with restarts", again),
-        _sheet("hard", "edge of reach and singularity, one start, up to 5000 iterations", hard),
+        _sheet("hard", "edge of reach and singularity, one start, up to 5000 iterations", hard, timed=True),
         _time_sheet(again),
         _two_hands(max(10, targets // 5), seed),
     ]
@@ -95,8 +95,8 @@ def _everybody(targets: TargetSet, long: bool = False) -> list[Outcome]:
     return [run(targets, name, LONG if long else None) for name in progress(able, targets.name, len(able))]
 
 
-def _sheet(name: str, title: str, outcomes: list[Outcome]) -> Sheet:
-    """One row a method, success and iterations of each set side by side."""
+def _sheet(name: str, title: str, outcomes: list[Outcome], timed: bool = False) -> Sheet:
+    """One row a method: success and iterations of each set side by side; with `timed`, the time of a solve as well."""
     sets = list(dict.fromkeys(outcome.of.name for outcome in outcomes))
     short = {outcome.of.name: outcome.of.short for outcome in outcomes}
     rows: dict[str, dict[str, Any]] = {}
@@ -105,9 +105,12 @@ def _sheet(name: str, title: str, outcomes: list[Outcome]) -> Sheet:
         row[f"success_{k}"] = outcome.success
         if not math.isnan(outcome.median_iterations):
             row[f"iterations_{k}"] = outcome.median_iterations
+            if timed:
+                row[f"median_{k}"] = outcome.median_seconds * 1e6
     headings = [Heading("method", "method")]
     for k, of in enumerate(sets):
         headings += [Heading(f"success_{k}", f"{short[of]} %", ".1f"), Heading(f"iterations_{k}", "it.", ".0f")]
+        headings += [Heading(f"median_{k}", "µs", ".0f")] if timed else []
     return Sheet(name, title, tuple(headings), list(rows.values()))
 
 
