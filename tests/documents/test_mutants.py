@@ -21,7 +21,7 @@ def trials(document: str) -> tuple[Trial, ...]:
 @pytest.mark.parametrize("document", DOCUMENTS)
 def test_at_least_95_percent_of_the_spoilt_forms_fail_and_the_others_have_a_reason(document: str) -> None:
     found = trials(document)
-    assert len(found) > 40
+    assert len(found) >= 40
     survivors = {(trial.mutant.claim.id, trial.mutant.change) for trial in found if not trial.caught}
     assert survivors == {key for key in EQUIVALENT if key[0].startswith(document)}
     assert len(survivors) <= 0.05 * len(found)

@@ -42,8 +42,8 @@ def matrix(form: Form) -> Measured:
         columns.append(deviation(M[:, :2], wanted[:, :2]))
         skew.append(deviation(M.T @ M, np.eye(3)))
     found = (
-        f"First two columns: off by up to {max(columns):.2g}, so points with z = 0 come out right; third column by up\n"
-        f"to {max(errors):.3g}. MᵀM departs from the unit matrix by up to {max(skew):.3g}."
+        f"First two columns: off by up to {max(columns):.2g}, so points with z = 0 come out right; third column by "
+        f"up to {max(errors):.3g}. MᵀM departs from the unit matrix by up to {max(skew):.3g}."
     )
     turns = list(_turns())
     return Measured.worst(errors, lambda k: "α, β, γ = {:.2f}, {:.2f}, {:.2f} rad".format(*turns[k]), found)

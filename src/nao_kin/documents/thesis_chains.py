@@ -128,7 +128,7 @@ def _measured(departures: Sequence[tuple[float, float]], reach: float, found: st
     far, turned = (max(d[k] for d in departures) for k in (0, 1))
     told = f"hand off by up to {1000.0 * far:.3g} mm, turned by up to {turned:.3g} rad"
     worst = max(far / reach, turned)
-    return Measured(math.inf if math.isnan(worst) else worst, len(departures), told, found or told)
+    return Measured(math.inf if math.isnan(worst) else worst, len(departures), found=found or told)
 
 
 def _rows_check(side: Side, matrix: Callable[..., Floats], count: Floats) -> Check:

@@ -104,8 +104,7 @@ def damped_step(J: Floats, e: Floats, damping: float) -> Floats:
 
 def _told(records: dict[str, Record], what: Callable[[Record], str]) -> str:
     parts = [f"{name} {what(record)}" for name, record in records.items()]
-    half = (len(parts) + 1) // 2
-    return ", ".join(parts[:half]) + ",\n" + ", ".join(parts[half:]) + "."
+    return ", ".join(parts) + "."
 
 
 def direct(form: Form) -> Measured:
@@ -237,7 +236,7 @@ def growth(form: Form) -> Measured:
         damped.append(float(np.abs(damped_step(J, e, 1e-2)).max()))
     growth = [later / earlier / 10.0 - 1.0 for earlier, later in itertools.pairwise(steps)]
     told = "; ".join(f"{b:g} rad: {s:.3g} rad, damped {d:.2g}" for b, s, d in zip(bends, steps, damped, strict=True))
-    return Measured.worst(growth, found=f"Largest joint step for 1 mm outwards, elbow bent by\n{told}.")
+    return Measured.worst(growth, found=f"Largest joint step for 1 mm outwards, elbow bent by {told}.")
 
 
 def from_the_foot(form: Form) -> Measured:

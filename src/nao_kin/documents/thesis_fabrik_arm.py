@@ -66,7 +66,7 @@ def _on_the_arm(form: Form) -> Measured:
         rounds.append(count)
     good = sum(error <= 1e-9 for error in errors)
     found_text = (
-        f"{good} of {_COUNT} hands reached with base and links kept; {float(np.median(rounds)):.0f} rounds in the\n"
+        f"{good} of {_COUNT} hands reached with base and links kept; {float(np.median(rounds)):.0f} rounds in the "
         f"median; links too long or short by {float(np.median(torn)):.3g} mm in the median, {max(torn):.3g} mm at most."
     )
     return Measured.worst(errors, found=found_text)

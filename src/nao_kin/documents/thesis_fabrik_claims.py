@@ -87,7 +87,7 @@ def _from_base(form: Form) -> Measured:
         bases.append(float(norm(found[0] - b) / d.sum()))
         lengths.append(float(np.abs(norm(np.diff(found, axis=0), axis=1) - d).max() / d.sum()))
     told = (
-        f"After it the base is up to {100.0 * max(bases):.3g} % of the chain's length from where it was, and a link\n"
+        f"After it the base is up to {100.0 * max(bases):.3g} % of the chain's length from where it was, and a link "
         f"up to {100.0 * max(lengths):.3g} % of that too long or short."
     )
     return Measured.worst(errors, found=told)
@@ -263,7 +263,7 @@ CLAIMS: Final = (
         tolerance=0.0,
         correction=Correction(
             fabrik_points,
-            "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line\n"
+            "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line "
             "with the target, and bound the iterations (nao_kin.ik.points.fabrik_points)",
             why="A long link leaves a hole about the base that line 7 does not see; on a line nothing ever leaves it.",
             check=_made_right,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     Pair = tuple[Any, Any]
 
-_QUARTER: Final = 1e-9  # |θ_3| this close to π/2 is π/2
+_QUARTER: Final = 1e-7  # |θ_3| this close to π/2 is π/2: an arc sine near 1 is known no better
 
 
 def _homogeneous(R: Floats, t: Floats) -> Floats:

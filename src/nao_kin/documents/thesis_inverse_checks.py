@@ -168,13 +168,25 @@ def pipeline(side: Side) -> Check:
             far, turned = (np.array([b[k] for b in best]) for k in (0, 1))
             lines.append(
                 f"{name}: {solved} of {len(poses)} solved; best candidate off by {_MM * float(np.median(far)):.3g} mm "
-                f"and\n{float(np.median(turned)):.3g} rad in the median, {_MM * float(far.max()):.3g} mm and "
+                f"and {float(np.median(turned)):.3g} rad in the median, {_MM * float(far.max()):.3g} mm and "
                 f"{float(turned.max()):.3g} rad at most"
             )
             worst = worst or [max(f / (arm.l3 + arm.l4), t) for f, t in best]
+        lines.append(_near_a_quarter(form, arm, postures[:50]))
         return Measured.worst(worst, found=";\n".join(lines) + ".")
 
     return check
+
+
+def _near_a_quarter(form: Form, arm: DescribedArm, postures: Floats) -> str:
+    """What is left of the digits where θ_3 is almost ±π/2: an arc sine near 1, then a division by cos θ_3."""
+    told, lost = list[str](), 0
+    for off in (1e-3, 1e-6, 0.0):
+        moved = [np.array([q[0], q[1], math.copysign(0.5 * math.pi - off, q[2]), q[3]]) for q in postures]
+        far = np.array([_MM * best_candidate(form, arm, arm.pose(q), arm.pose)[0] for q in moved])
+        lost = int((far > 1e-3).sum())
+        told.append(f"{far.max():.1g} mm at {off:g} rad")
+    return f"θ_3 near ±π/2: off by up to {told[0]}, {told[1]}; at ±π/2 itself {lost} of {len(postures)} missed"
 
 
 def best_candidate(

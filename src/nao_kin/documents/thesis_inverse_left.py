@@ -257,7 +257,7 @@ CLAIMS: Final = (
         check=pipeline("left"),
         reference="forward kinematics of the described arm (Pinocchio), and of the robot's own arm",
         domain=f"{_LIMITS} as targets; θ_3 read as the table counts it. Corrected it solves the described arm, and"
-        " comes as close to the robot's as that arm is like it",
+        " comes as close to the robot's as that arm is like it; at θ_3 = ±π/2 rounding can lift the sine above 1",
         correction=Correction(
             forms.left_pipeline_corrected,
             "θ_4 by the squared distance from s = (0, l_1, l_2); the rest as printed",

@@ -83,7 +83,7 @@ def _counts(form: Form) -> Measured:
     h25 = [name for name in load("nao_v50_h25").joint_names if any(p in name for p in ("Head", "Shoulder", "Elbow"))]
     found = (
         f"{len(motors)} motors, {len(upper)} of them in the upper body; with LWristYaw and RWristYaw, which these "
-        f"robots have fixed,\n{len(h25) + 2} of {len(motors) + 2}. The legs have {len(motors) - len(upper)} motors."
+        f"robots have fixed, {len(h25) + 2} of {len(motors) + 2}. The legs have {len(motors) - len(upper)} motors."
     )
     all_said, upper_said = form()
     return Measured.worst([all_said - len(motors), upper_said - len(upper)], lambda k: ("all", "upper body")[k], found)
@@ -124,7 +124,7 @@ def _dimensions(form: Form) -> Measured:
     said, wanted = form(), _dimensions_mm()
     names = list(wanted)
     return Measured.worst(
-        (said[name] - wanted[name] for name in names), lambda k: f"{names[k]} is {wanted[names[k]]:.2f} mm"
+        (said[name] - wanted[name] for name in names), lambda k: f"{names[k]}, in the model {wanted[names[k]]:.2f} mm"
     )
 
 
@@ -151,7 +151,7 @@ def _axis_of(name: str) -> Floats:
 
 
 def _misnamed(name: str) -> str:
-    return name if nao().model.existJointName(name) else f"there is no {name}"
+    return name if nao().model.existJointName(name) else f"{name}, which does not exist"
 
 
 def _axes_found() -> str:
@@ -194,8 +194,8 @@ CLAIMS: Final = (
         id="000:table-2",
         place="Table 2",
         said="Named dimensions of the arms.",
-        formula="ShoulderOffsetY 98.00, ElbowOffsetY 15.00, UpperArmLength 105.00,\n"
-        "LowerArmLength 55.98, ShoulderOffsetZ 100.00, HandOffsetX 57.75,\nHandOffsetZ 12.31 mm",
+        formula="ShoulderOffsetY 98.00, ElbowOffsetY 15.00, UpperArmLength 105.00, "
+        "LowerArmLength 55.98,\nShoulderOffsetZ 100.00, HandOffsetX 57.75, HandOffsetZ 12.31 mm",
         printed=table_2,
         check=_dimensions,
         reference="joint placements of the V5 model (Pinocchio)",
