@@ -10,12 +10,18 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from nao_kin.analytic.batch import BatchSolutions as BatchSolutions
+    from nao_kin.analytic.batch import solve_all_batch as solve_all_batch
+    from nao_kin.analytic.solutions import Solutions as Solutions
+    from nao_kin.analytic.solutions import nearest as nearest
+    from nao_kin.analytic.solutions import solve_all as solve_all
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
+    from nao_kin.dh_from_chain import to_dh as to_dh
     from nao_kin.dh_row import DHRow as DHRow
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
@@ -33,6 +39,8 @@ if TYPE_CHECKING:
     from nao_kin.ik.problem import IKResult as IKResult
     from nao_kin.ik.problem import Status as Status
     from nao_kin.ik.target import Target as Target
+    from nao_kin.ik.tree import solve_tree as solve_tree
+    from nao_kin.ik.tree_problem import TreeResult as TreeResult
     from nao_kin.known import robot_names as robot_names
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
@@ -46,6 +54,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "BatchResult": "ik.batch",
+    "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
     "Chain": "chain",
     "ChainJoint": "chain",
@@ -59,10 +68,12 @@ _HOME = {
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
     "Robot": "robot",
+    "Solutions": "analytic.solutions",
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
     "Tree": "tree",
+    "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",
     "compare": "crosscheck",
     "document_chain": "documents.chains",
@@ -71,11 +82,16 @@ _HOME = {
     "follow": "ik.along",
     "ledger": "documents.ledger",
     "load": "robot",
+    "nearest": "analytic.solutions",
     "project_to_reach": "ik.along",
     "robot_names": "known",
     "show": "view.export",
     "solve": "ik.methods",
+    "solve_all": "analytic.solutions",
+    "solve_all_batch": "analytic.batch",
     "solve_batch": "ik.batch",
+    "solve_tree": "ik.tree",
+    "to_dh": "dh_from_chain",
 }
 
 __all__ = list(_HOME)

@@ -248,8 +248,9 @@ class Robot:
             InvalidInputError: No tips, or one of them twice.
             NoPathError: No moving joint lies between the base and a tip.
         """
-        if isinstance(tips, str):  # which is a sequence of frames with short names
-            raise InvalidInputError("tips", "a list of frames, as ['LArm', 'RArm']", repr(tips))
+        # A string is a sequence of frames with short names.
+        if isinstance(tips, str) or not isinstance(tips, Sequence) or not all(isinstance(tip, str) for tip in tips):
+            raise InvalidInputError("tips", "a list of frames, as ['LArm', 'RArm']", repr(tips)[:60])
         return Tree.of_chains([self.chain(base, tip) for tip in tips])
 
     def path(self, base: str, tip: str) -> tuple[tuple[UrdfJoint, ...], tuple[UrdfJoint, ...]]:

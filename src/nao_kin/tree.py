@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.urdf_path import Coupling, couplings_on
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     import pinocchio as pin
     from numpy.typing import ArrayLike, NDArray
@@ -172,7 +172,7 @@ class Tree:
         Raises:
             UnknownNameError: It is none; carries near matches.
         """
-        if tip not in self.chains:
+        if not isinstance(tip, str) or tip not in self.chains:
             raise UnknownNameError("tip", tip, self.chains, self.name)
 
     @cached_property
@@ -185,7 +185,11 @@ class Tree:
 
 def _by_tip(chains: Iterable[Chain]) -> dict[str, Chain]:
     by_tip: dict[str, Chain] = {}
+    if not isinstance(chains, Iterable):
+        raise InvalidInputError("chains of a tree", "a list of chains", repr(chains)[:60])
     for chain in chains:
+        if not hasattr(chain, "joint_path"):
+            raise InvalidInputError("chains of a tree", "chains only", repr(chain)[:60])
         if chain.tip_name in by_tip:
             raise InvalidInputError("tips", "each tip once", f"{chain.tip_name!r} twice")
         by_tip[chain.tip_name] = chain
@@ -210,19 +214,25 @@ def _common_robot(chains: Iterable[Chain]) -> Robot | None:
 def _joined(
     chains: Iterable[Chain], owners: Sequence[str], couplings: Mapping[str, Coupling]
 ) -> tuple[ChainJoint, ...]:
-    """The joint of each owner, its range and speed cut down to what every joint that it moves allows."""
-    found: dict[str, ChainJoint] = {}
+    """The joint of each owner: what all chains that have it allow, at a speed that all joints it moves can follow."""
     every = [joint for chain in chains for joint in chain.joints]
-    for joint in sorted(every, key=lambda joint: couplings[joint.name].leader != joint.name):  # owners first
+    found: dict[str, ChainJoint] = {}
+    for joint in every:
+        if joint.name in owners:
+            found[joint.name] = _narrowed(found.get(joint.name, joint), joint)
+    for joint in every:  # the range of a follower is its leader's, mapped by the chain; back again it would be rounded
         c = couplings[joint.name]
-        ends = sorted((end - c.offset) / c.multiplier for end in (joint.lower, joint.upper))
-        speed = joint.max_velocity / abs(c.multiplier)
-        known = found.setdefault(c.leader, replace(joint, lower=-math.inf, upper=math.inf))
-        if joint.name == known.name and joint.kind != known.kind:
-            raise InvalidInputError(f"joint {joint.name}", "one kind in all chains", f"{known.kind} and {joint.kind}")
-        lower, upper = max(known.lower, ends[0]), min(known.upper, ends[1])
-        if lower > upper:
-            got = f"[{known.lower:.6g}, {known.upper:.6g}] and [{ends[0]:.6g}, {ends[1]:.6g}]"
-            raise InvalidInputError(f"joint {joint.name}", "ranges with a value in common", got)
-        found[c.leader] = replace(known, lower=lower, upper=upper, max_velocity=min(known.max_velocity, speed))
+        speed = min(found[c.leader].max_velocity, joint.max_velocity / abs(c.multiplier))
+        found[c.leader] = replace(found[c.leader], max_velocity=speed)
     return tuple(found[name] for name in owners)
+
+
+def _narrowed(joint: ChainJoint, again: ChainJoint) -> ChainJoint:
+    """A joint with the range that two chains allow."""
+    if joint.kind != again.kind:
+        raise InvalidInputError(f"joint {joint.name}", "one kind in all chains", f"{joint.kind} and {again.kind}")
+    lower, upper = max(joint.lower, again.lower), min(joint.upper, again.upper)
+    if lower > upper:
+        got = f"[{joint.lower:.6g}, {joint.upper:.6g}] and [{again.lower:.6g}, {again.upper:.6g}]"
+        raise InvalidInputError(f"joint {joint.name}", "ranges with a value in common", got)
+    return replace(joint, lower=lower, upper=upper)

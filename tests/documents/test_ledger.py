@@ -129,7 +129,7 @@ def test_the_figures_of_the_documents_are_there_to_compare() -> None:
     short = found["001:2.2-short-distance"]
     assert short.verdict is Verdict.fails
     assert short.measured is not None
-    assert "Of 200 motions 200 end elsewhere" in short.measured.found
+    assert "Of 60 motions 60 end elsewhere" in short.measured.found
 
 
 def _off(size: float) -> Claim:

@@ -10,14 +10,12 @@ import pytest
 from nao_kin.documents import mutants as module
 from nao_kin.documents.claim import DOCUMENTS, Claim, Measured, Verdict, judged
 from nao_kin.documents.ledger import claims
-from nao_kin.documents.mutants import EQUIVALENT, Trial, mutants, tried
+from nao_kin.documents.mutants import EQUIVALENT, Trial, mutants, tried, trials_of
 
 
 @cache
 def trials(document: str) -> tuple[Trial, ...]:
-    good = (Verdict.holds, Verdict.holds_under_convention)
-    holding = [claim for claim in claims(document=document) if judged(claim).verdict in good]
-    return tuple(tried(mutant) for claim in holding for mutant in mutants(claim))
+    return tuple(trial for claim in claims(document=document) for trial in trials_of(claim))
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)

@@ -63,7 +63,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     for bad in (0, -1, 1.5, True):
         with pytest.raises(InvalidInputError, match="iterations"):
             ik_pseudo_inverse(START, p, iterations=bad)
-    for bad in (0.0, -1.0, math.nan, math.inf):
+    for bad in (0.0, -1.0, math.nan, math.inf, "much"):
         with pytest.raises(InvalidInputError, match="gain"):
             ik_transpose(START, p, gain=bad)
         with pytest.raises(InvalidInputError, match="gain"):

@@ -7,7 +7,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.chain import in_limits, neutral, random_configurations
-from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.errors import InvalidInputError, NaoKinError, UnknownNameError
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Problem, Run, Status, judge
 from nao_kin.ik.target import Target
@@ -151,9 +151,15 @@ def test_parameters_are_named_and_positive(rng: np.random.Generator) -> None:
     T = chain.pose(q)
     with pytest.raises(UnknownNameError, match="Did you mean 'damping'"):
         nk.solve(chain, T, method="dls", parameters={"dampning": 0.1})
-    for bad in (0.0, -1.0, np.nan, np.inf, True, "much"):
+    assert nk.solve(chain, T, method="pinv", parameters={"gain": np.float32(1.0)}).solved
+    nk.solve(chain, T, method="pinv", parameters={"gain": 1.0})  # remembered, and True equals 1.0
+    for bad in (0.0, -1.0, np.nan, np.inf, True, "much", 10**400, [1.0]):
         with pytest.raises(InvalidInputError, match="parameter gain"):
             nk.solve(chain, T, method="pinv", parameters={"gain": bad})
+    for given, words in ((5, "numbers by name"), ([("gain", 1.0)], "numbers by name"), ({3: 1.0, "gain": 1.0}, "'3'")):
+        for engine in ("compiled", "reference"):
+            with pytest.raises(NaoKinError, match=words):
+                nk.solve(chain, T, method="pinv", parameters=given, engine=engine)
     one = Budget(iterations=1, restarts=0, largest_step=100.0)
     near = q + 0.01
     whole, half = (
@@ -174,7 +180,7 @@ def test_a_jump_is_not_a_solution(engine, rng: np.random.Generator) -> None:
         assert not held.solved
         assert f"more than {0.9 * move:g}" in held.message
         assert nk.solve(chain, chain.pose(q), q0, jump=1.1 * move, engine=engine).solved
-    for bad in (0.0, -1.0, np.nan, "far", True):
+    for bad in (0.0, -1.0, np.nan, "far", True, 10**400):
         with pytest.raises(InvalidInputError, match="jump"):
             nk.solve(chain, chain.pose(q), q0, jump=bad, engine=engine)
 
@@ -184,3 +190,56 @@ def test_a_claimed_jump_is_measured_again() -> None:
     q = neutral(chain)
     elsewhere = Problem(chain, Target.pose(chain.pose(q + 0.3)))
     assert judge(elsewhere, Run(q, Status.JUMPED)).status is Status.STALLED
+
+
+def test_a_jump_is_told_after_the_caller_has_gone_on() -> None:
+    """The result keeps a start of its own."""
+    chain = robot("jaco2").chain("arm")
+    q0 = neutral(chain)
+    result = nk.solve(chain, chain.pose(q0 + 0.3), q0, jump=1e-3)
+    assert result.status is Status.JUMPED
+    told = result.message
+    q0[:] = 99.0
+    assert result.message == told
+
+
+@pytest.mark.parametrize("method", handled("position"))
+@pytest.mark.parametrize("engine", ["compiled", "reference"])
+def test_joints_that_do_not_move_what_is_wanted_are_no_trouble(method: str, engine: str) -> None:
+    """The NAO's neck frame lies on both of its axes, so no gain or damping can be measured by how far it moves."""
+    chain, budget = robot("nao").chain("head"), Budget(iterations=20, restarts=2)
+    p = chain.pose(neutral(chain)).translation
+    assert nk.solve(chain, p, method=method, engine=engine, budget=budget).solved
+    off = nk.solve(chain, p + np.array([0.0, 0.0, 0.1]), method=method, engine=engine, budget=budget)
+    assert off.status is Status.OUT_OF_REACH
+    assert off.position_error == pytest.approx(0.1)
+    if nk.METHODS[method].several_tips:
+        assert nk.solve(robot("nao").tree("torso", ["Head"]), {"Head": p}, method=method, budget=budget).solved
+
+
+@pytest.mark.parametrize("engine", ["compiled", "reference"])
+@pytest.mark.parametrize(
+    "method", [name for name, row in nk.METHODS.items() if row.weighs and "position" in row.targets]
+)
+def test_an_error_whose_square_is_infinite_is_told_without_warnings(method: str, engine: str) -> None:
+    """A free axis leaves it unproven that the target is out of reach, so the loop really heads for it."""
+    target = Target.position([1e200, 1e200, 0.0], {"z": 0.0})
+    result = nk.solve(robot("nao").chain("left_arm"), target, method=method, engine=engine, budget=SHORT)
+    assert result.status in (Status.STALLED, Status.NOT_FINITE, Status.BUDGET_SPENT)
+    assert result.position_error == pytest.approx(1e200 * np.sqrt(2.0))
+    assert np.isfinite(result.q).all()
+
+
+def test_options_of_another_kind_are_refused() -> None:
+    chain, tree = robot("nao").chain("left_arm"), robot("nao").tree("torso", ["LArm"])
+    for options, words in (({"budget": 5}, "nao_kin.Budget"), ({"tolerances": None}, "nao_kin.Tolerances")):
+        for engine in ("compiled", "reference"):
+            with pytest.raises(InvalidInputError, match=words):
+                nk.solve(chain, [0.1, 0.1, 0.1], engine=engine, **options)
+        with pytest.raises(InvalidInputError, match=words):
+            nk.solve(tree, {"LArm": [0.1, 0.1, 0.1]}, **options)
+    for options in ({"engine": "reference"}, {"engine": "fast"}, {"jump": 1.0}):
+        with pytest.raises(InvalidInputError, match=next(iter(options))):
+            nk.solve(tree, {"LArm": [0.1, 0.1, 0.1]}, **options)
+    with pytest.raises(InvalidInputError, match="largest_step"):
+        Budget(largest_step=10**400)

@@ -12,7 +12,7 @@ from nao_kin.ik import orientation, rules
 from nao_kin.ik.aim import POSE, raw_error
 from nao_kin.ik.catalogue import METHODS
 from nao_kin.ik.rules import update
-from nao_kin.ik.scales import Scales, scales_of
+from nao_kin.ik.scales import Scales, chain_scales
 from nao_kin.kernels.linear import orthogonal_rows
 from nao_kin.se3 import rotation_angle
 from tests.conftest import robot
@@ -192,7 +192,7 @@ def test_quaternion_and_euler_errors_are_those_of_the_practicum(rng: np.random.G
 def test_scales_are_the_largest_seen(rng: np.random.Generator) -> None:
     chain = robot("jaco2").chain("arm")
     Q = random_configurations(chain, 50, rng)
-    scales = scales_of(chain, "position", Q)
+    scales = chain_scales(chain, "position", Q)
     assert scales.singular_value == pytest.approx(max(np.linalg.norm(chain.jacobian(q)[:3], 2) for q in Q))
     volumes = [math.sqrt(np.linalg.det(chain.jacobian(q)[:3] @ chain.jacobian(q)[:3].T)) for q in Q]
     assert scales.manipulability == pytest.approx(max(volumes))

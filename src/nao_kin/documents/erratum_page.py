@@ -27,7 +27,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto
 article { border-top: 1px solid var(--line); padding: .75rem 0; }
 article h3 { font-size: 1rem; margin: 0; } article h3 .place { font-weight: normal; color: var(--faint); }
 dl { display: grid; grid-template-columns: 7rem 1fr; gap: .25rem 1rem; margin: .5rem 0 0; }
-dt { color: var(--faint); } dd { margin: 0; overflow-x: auto; }
+dt { color: var(--faint); } dd { margin: 0; overflow: auto hidden; }
 pre { margin: 0; white-space: pre-wrap; font: .9rem/1.4 ui-monospace, monospace; }
 math { font-size: 1.1rem; } code { font: .9rem ui-monospace, monospace; }
 .fails { color: var(--bad); } .not-checkable { color: var(--faint); }

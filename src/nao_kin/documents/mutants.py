@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from nao_kin.documents.claim import Claim, Form
 
-__all__ = ["EQUIVALENT", "Mutant", "Trial", "mutants", "tried"]
+__all__ = ["EQUIVALENT", "Mutant", "Trial", "mutants", "trials_of", "tried"]
 
 _PATIENCE: Final = 20.0  # [s] a copy that runs longer than this has lost the end of its loop, and fails by that
 
@@ -117,6 +117,14 @@ def mutants(claim: Claim) -> Iterator[Mutant]:
         tree = ast.parse(source)
         change = next(itertools.islice(_changes(tree), number, None))()
         yield Mutant(claim, change, _compiled(tree, claim.printed))
+
+
+def trials_of(claim: Claim) -> tuple[Trial, ...]:
+    """Every spoilt copy of a claim that holds, with or without a convention, judged; none of one that fails."""
+    copies = tuple(mutants(claim))
+    if not copies or judged(claim).verdict not in (Verdict.holds, Verdict.holds_under_convention):
+        return ()
+    return tuple(tried(copy) for copy in copies)
 
 
 def tried(mutant: Mutant) -> Trial:

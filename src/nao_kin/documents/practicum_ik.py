@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.arrays import vector
+from nao_kin.arrays import positive, vector
 from nao_kin.chain import configuration
 from nao_kin.documents.practicum import jaco2
 from nao_kin.errors import InvalidInputError
@@ -81,9 +81,8 @@ def ik_transpose(
     Raises:
         InvalidInputError: Wrong shapes, not finite, a gain or count that is not positive.
     """
-    if not 0.0 < gain < math.inf:
-        raise InvalidInputError("gain", "a finite number > 0 [1/m²]", repr(gain))
-    return _iterate(lambda J, e: gain * (J.T @ e), q, p_base, iterations, chain)
+    K = positive(gain, "gain", "[1/m²]")
+    return _iterate(lambda J, e: K * (J.T @ e), q, p_base, iterations, chain)
 
 
 def ik_pseudo_inverse(
@@ -104,9 +103,8 @@ def ik_pseudo_inverse(
     Raises:
         InvalidInputError: Wrong shapes, not finite, a gain or count that is not positive.
     """
-    if not 0.0 < gain < math.inf:
-        raise InvalidInputError("gain", "a finite number > 0", repr(gain))
-    return _iterate(lambda J, e: gain * _printed_pseudo_inverse_step(J, e), q, p_base, iterations, chain)
+    K = positive(gain, "gain")
+    return _iterate(lambda J, e: K * _printed_pseudo_inverse_step(J, e), q, p_base, iterations, chain)
 
 
 def ik_checked(

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CLAIMS"]
 
-_COUNT, _SEED = 200, 1
+_COUNT, _SEED = 60, 1
 _TRIANGLE: Final = "motions that speed up and brake without a cruise, integrated"
-_SHORT: Final = "200 motions too short for their allowed speed, rates 0.2 to 2 m/s², started at t_0 = 0"
+_SHORT: Final = "60 motions too short for their allowed speed, rates 0.2 to 2 m/s², started at t_0 = 0"
 
 
 def _over_short(apart: Callable[[Form, Short], float]) -> Check:
@@ -167,7 +167,7 @@ CLAIMS: Final = (
         printed=printed.cruise_is_negative,
         check=_condition,
         reference="whether the motion reaches v_max",
-        domain="200 motions with a cruise, 200 too short for one, 1 nm to either side; the share told wrongly",
+        domain="60 motions with a cruise, 60 too short for one, 1 nm to either side; the share told wrongly",
     ),
     Claim(
         id="001:2.2-short-distance",

@@ -263,7 +263,7 @@ CLAIMS: Final = (
         tolerance=0.0,
         correction=Correction(
             fabrik_points,
-            "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line\n"
+            "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line "
             "with the target, and bound the iterations (nao_kin.ik.points.fabrik_points)",
             why="A long link leaves a hole about the base that line 7 does not see; on a line nothing ever leaves it.",
             check=_made_right,

@@ -197,7 +197,7 @@ CLAIMS: Final = (
         domain="200 postures inside the limits as targets; A' and the table's θ_3. Corrected as on the left",
         correction=Correction(
             forms.right_pipeline_corrected,
-            "(3.3.0.10) with the squared distance from s = (0, −l_1, l_2),\n"
+            "(3.3.0.10) with the squared distance from s = (0, −l_1, l_2), "
             "(3.3.0.11) with + l_4 sin θ_4 A'_(2,2) / cos θ_4, (3.3.0.12) without minus",
             why="θ_4 is wrong by its root and by s, θ_2 belongs to A, and one θ_3 has the wrong sign.",
         ),

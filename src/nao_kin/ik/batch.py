@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.loop import Budget
 
-__all__ = ["BatchResult", "solve_batch"]
+__all__ = ["AUDITED", "AUDIT_TOLERANCE", "CHUNK", "BatchResult", "Wanted", "inside_limits", "solve_batch"]
 
 CHUNK: Final = 1 << 16
 """Targets worked on at a time: scratch memory does not grow with the batch."""
@@ -128,7 +128,7 @@ def solve_batch(
         UnknownNameError: No such method, parameter, or joint that the start names; carries near matches.
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
-    wanted = _Wanted.of(targets)
+    wanted = Wanted.of(targets)
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
     ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed, parameters)
@@ -148,7 +148,7 @@ def solve_batch(
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Wanted:
+class Wanted:
     """The targets as they came, made into what solvers take chunk by chunk.
 
     Attributes:
@@ -160,7 +160,12 @@ class _Wanted:
     given: NDArray[Any]
 
     @classmethod
-    def of(cls, targets: ArrayLike | Sequence[Target]) -> _Wanted:
+    def of(cls, targets: ArrayLike | Sequence[Target]) -> Wanted:
+        """The targets as callers give them.
+
+        Raises:
+            InvalidInputError: None of the forms that `solve_batch` takes, or mixed kinds.
+        """
         if isinstance(targets, Sequence) and len(targets) and all(isinstance(t, Target) for t in targets):
             wanted: list[Any] = list(targets)
             if len(sorts := {(t.kind, t.weights) for t in wanted}) > 1:
@@ -232,7 +237,7 @@ def _judge(
     chain, q = result.chain, np.ascontiguousarray(outcomes[:, layout.OUTCOME :])
     position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
-    inside = _inside(chain, q, tolerances.limits)
+    inside = inside_limits(chain, q, tolerances.limits)
     codes = outcomes[:, layout.CODE].astype(np.int8)
     ended = np.array([_STATUSES.index(status) for status in _ENDED], dtype=np.int8)[codes]
     ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
@@ -246,7 +251,8 @@ def _judge(
 _ENDED = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
 
 
-def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
+def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
+    """Whether every joint of each row (N, n) is within its own and its coupled range, give or take the tolerance."""
     inside = ((q >= chain.lower - tolerance) & (q <= chain.upper + tolerance)).all(axis=1)
     index = {name: i for i, name in enumerate(chain.joint_names)}
     for rule in chain.limit_rules:
@@ -259,7 +265,7 @@ def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
 
 def _audit(
     result: BatchResult,
-    wanted: _Wanted,
+    wanted: Wanted,
     tolerances: Tolerances,
     rng: np.random.Generator,
     *,

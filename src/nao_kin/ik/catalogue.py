@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal
 
+from nao_kin.arrays import positive
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik import rules
 from nao_kin.ik.geometric import CCD, FABRIK, FOLLOW_THE_LEADER, refusal
@@ -14,8 +16,6 @@ from nao_kin.ik.orientation import EULER, QUATERNION, ROTATION_VECTOR
 from nao_kin.ik.target import AXES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from nao_kin.chain import Chain
     from nao_kin.ik.scales import Scales
     from nao_kin.ik.target import Target, TargetKind
@@ -41,10 +41,13 @@ class Parameter:
     meaning: str
 
     def default(self, scales: Scales | None) -> float:
-        """The default for a chain of these scales; those without a scale need none."""
-        if not self.per or scales is None:
+        """The default for a chain of these scales; those without a scale need none.
+
+        Of a chain whose joints do not move what the target binds, any will do: its Jacobian is 0.
+        """
+        sigma = 0.0 if scales is None else scales.singular_value
+        if not self.per or scales is None or sigma * sigma == 0.0:
             return self.factor
-        sigma = scales.singular_value
         return self.factor * {"σ": sigma, "1/σ²": 1.0 / (sigma * sigma), "w": scales.manipulability}[self.per]
 
 
@@ -62,6 +65,7 @@ class Method:
         orientation_error: Form of the orientation error it sees, see `nao_kin.ik.orientation`.
         weighs: Number of axes, in the order of `nao_kin.ik.target.AXES`, that may have weights other than 1.
         hinges: Whether it works on chains of hinges with a motor each only.
+        several_tips: Whether it serves several tips at once, see `nao_kin.solve_tree`.
         budget: How long it tries unless told otherwise; slow methods need more patience.
     """
 
@@ -74,6 +78,7 @@ class Method:
     orientation_error: int = ROTATION_VECTOR
     weighs: int = 6
     hinges: bool = False
+    several_tips: bool = True
     budget: Budget = field(default_factory=Budget)
 
     @property
@@ -90,7 +95,7 @@ class Method:
             expected = f"weights of 1 for {', '.join(AXES[self.weighs :])}, as method {self.name!r} weighs them alike"
             return InvalidInputError("weights", expected, str(list(target.weights)))
         if self.hinges and (reason := refusal(chain.joint_path)):
-            expected = f"a chain of hinges for method {self.name!r}; 'ccd' works on any"
+            expected = f"a chain of hinges for method {self.name!r}; 'lm' works on any, for one tip 'ccd' too"
             return InvalidInputError(f"chain {chain.name}", expected, f"one that is not: {reason}")
         return None
 
@@ -99,15 +104,16 @@ class Method:
 
         Raises:
             UnknownNameError: The method has no such parameter; carries near matches.
-            InvalidInputError: A value is not a finite number above 0.
+            InvalidInputError: Not a mapping, or a value is not a finite number above 0.
         """
+        if not isinstance(given, Mapping):
+            raise InvalidInputError("parameters", "numbers by name, as {'gain': 0.5}", repr(given)[:60])
         names = [parameter.name for parameter in self.parameters]
-        for name, value in given.items():
+        for name in given:
             if name not in names:
                 raise UnknownNameError("parameter", name, names, f"method {self.name!r}")
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
-                raise InvalidInputError(f"parameter {name}", "a finite number > 0", repr(value)[:40])
-        return tuple(float(given.get(p.name, p.default(scales))) for p in self.parameters)
+        values = {name: positive(value, f"parameter {name}") for name, value in given.items()}
+        return tuple(values[p.name] if p.name in values else p.default(scales) for p in self.parameters)
 
 
 _ALL: Final[tuple[TargetKind, ...]] = ("pose", "position", "pointing", "orientation")
@@ -161,6 +167,7 @@ _ROWS: Final = (
         parameters=(_GAIN, Parameter("transpose_gain", 1.5, "1/σ²", "K of the transpose")),
         reference="practicum, section 1.8",
         choose_it="to repeat the practicum: the better of pseudo-inverse and transpose at every step",
+        several_tips=False,
         budget=_STEADY,
     ),
     Method(
@@ -181,6 +188,7 @@ _ROWS: Final = (
         choose_it="to repeat the practicum: differences of roll, pitch and yaw; fails at pitch ±90°",
         orientation_error=EULER,
         weighs=3,
+        several_tips=False,
         budget=Budget(patience=20),
     ),
     Method(
@@ -192,6 +200,7 @@ _ROWS: Final = (
         choose_it="to repeat the practicum: vector part of the quaternion; fails at half a turn",
         orientation_error=QUATERNION,
         weighs=3,
+        several_tips=False,
         budget=Budget(patience=20),
     ),
     Method(
@@ -241,6 +250,7 @@ _ROWS: Final = (
         parameters=(),
         reference="Wang and Chen 1991, cyclic coordinate descent",
         choose_it="long chains and any joint, without a Jacobian; the error never grows",
+        several_tips=False,
         weighs=0,
         budget=_STEADY,
     ),
@@ -251,6 +261,7 @@ _ROWS: Final = (
         parameters=(),
         reference="Brown, Latombe and Montgomery 2004, follow the leader",
         choose_it="to see the chain dragged by its tip like a rope",
+        several_tips=False,
         weighs=0,
         hinges=True,
         budget=_STEADY,

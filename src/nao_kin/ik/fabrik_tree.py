@@ -44,9 +44,9 @@ def tree_sweep(
 ) -> Floats:
     """One FABRIK iteration on chains that share joints; the sum of squared distances to the targets does not increase.
 
-    Like `nao_kin.ik.geometric.sweep`: a straight chain leaves the line of its target, a pass that does not bring the
-    tips closer is taken back and the joints are moved for the tips alone, and the sweep goes on in its direction as
-    long as that helps.
+    It proceeds like `nao_kin.ik.geometric.sweep`, with one pass instead of two: a straight chain leaves the line of its
+    target, which alone may increase the error; a pass that does not bring the tips closer is taken back, and the joints
+    are moved for the tips alone; the sweep goes on in its direction as long as that helps.
 
     Args:
         paths: Each chain's joints (m + 1, 16), see `nao_kin.kernels.motion`, none that `geometric.refusal` names.

@@ -5,8 +5,8 @@ Free points always come closer, hinges need not: where they stand against each o
 closer, or hardly. Such a pass is taken back, and the sweep moves the joints for the tip alone, which is CCD. So no
 sweep of any method increases the error, but for one that has a straight chain leave the line of its target.
 
-All three converge linearly, which can be slow near the target. So a sweep ends with a try in the direction in which it
-went: twice as far, four times, and so on as long as the error falls.
+All three converge linearly, which can be slow near the target. So a sweep is two passes and a try to go on in the
+direction from the first to the second: as far again, then twice as far, and so on as long as the error falls.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ FOLLOW_THE_LEADER: Final = 101
 FABRIK: Final = 102
 
 WORTH: Final = 0.81
-"""A pass over points counts if it takes a tenth off the distance, so that its square falls to this part."""
+"""A pass over points counts if it takes a tenth off the distance, so that its square falls to this part. Out of reach,
+where the distance cannot fall by much, anything counts."""
 
 DOUBLINGS: Final = 20
 """Times that a sweep's own step is doubled at most."""
@@ -68,7 +69,7 @@ def sweep(
     tip: Floats,
     memory: Floats,
 ) -> None:
-    """One pass: moves q to a new configuration inside its limits, coupled ones included.
+    """Two passes and a step on: moves q to a new configuration inside its limits, coupled ones included.
 
     Args:
         method: `CCD`, `FOLLOW_THE_LEADER` or `FABRIK`; the latter two on chains that `refusal` does not name.
@@ -87,19 +88,40 @@ def sweep(
     start, rest = memory[:n], memory[n:]
     if method != CCD:
         leave_line(joints, limits, coupled, goal, q, axes, tip, rest)
+    _improve(method, joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
+    _improve(method, joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
+    _go_on(joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
+
+
+@leaf_jit
+def _improve(
+    method: int,
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    kind: int,
+    goal: Floats,
+    closeness: float,
+    start: Floats,
+    q: Floats,
+    axes: Floats,
+    tip: Floats,
+    memory: Floats,
+) -> None:
+    """One pass of the method, or of CCD where that does not bring the tip closer; `start` (n,) receives q before it."""
+    n = q.shape[0]
     before = squared_error(kind, goal, closeness, tip)
     for i in range(n):
         start[i] = q[i]
     if method != CCD:
-        hinge_pass(method == FOLLOW_THE_LEADER, joints, limits, coupled, goal, q, axes, tip, rest)
-        if not squared_error(kind, goal, closeness, tip) < WORTH * before:
-            for i in range(n):
-                q[i] = start[i]
-            place(joints, q, axes, tip)
-            method = CCD
-    if method == CCD:
-        ccd_pass(joints, limits, coupled, kind, goal, closeness, q, axes, tip, rest)
-    _go_on(joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
+        in_reach = hinge_pass(method == FOLLOW_THE_LEADER, joints, limits, coupled, goal, q, axes, tip, memory)
+        worth = WORTH if in_reach else 1.0
+        if squared_error(kind, goal, closeness, tip) < worth * before:
+            return
+        for i in range(n):
+            q[i] = start[i]
+        place(joints, q, axes, tip)
+    ccd_pass(joints, limits, coupled, kind, goal, closeness, q, axes, tip, memory)
 
 
 @leaf_jit
@@ -116,7 +138,10 @@ def _go_on(
     tip: Floats,
     memory: Floats,
 ) -> None:
-    """Goes on in the direction from `start` to q while doubling the way brings the error down.
+    """Goes on in the direction from `start` to q, each time twice as far, while that brings the error down.
+
+    After a pass, what is left of the error lies mostly along the direction in which the method is slowest; so it is the
+    step from one pass to the next that points along it.
 
     A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical problems, 1961.
     """

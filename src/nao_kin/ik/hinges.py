@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CYCLES", "STILL", "carry", "hinge_memory", "hinge_pass", "leave_line", "outward_pass", "want_points"]
 
-CYCLES: Final = 20
-"""Times that the joints of one group take turns."""
+CYCLES: Final = 100
+"""Times that the joints of one group take turns at most. Where two of them move the point nearly the same way they are
+slow, and a pass may end short of what the group could do; the next pass goes on."""
 
 STILL: Final = 1e-9
 """A cycle of turns that moves no joint by more than this [rad] is the last."""
@@ -49,8 +50,10 @@ def hinge_pass(
     axes: Floats,
     tip: Floats,
     memory: Floats,
-) -> None:
+) -> bool:
     """One iteration towards a position: a reach pass from the target to the base, an outward pass back to the tip.
+
+    Returns whether the target is within reach of the points; if not, the tip heads for the nearest place that is.
 
     Args:
         follow: Follow-the-leader instead of FABRIK: the outward pass makes links parallel to those of the reach pass,
@@ -71,6 +74,10 @@ def hinge_pass(
     outward_pass(follow, 0, joints, limits, coupled, count, first, slide, wanted, q, axes, tip)
     move_inside(q, limits, coupled)
     place(joints, q, axes, tip)
+    off = 0.0
+    for i in range(3):
+        off = max(off, abs(wanted[0, i] - goal[i, 3]))
+    return count == 0 or off == 0.0
 
 
 @leaf_jit

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.arrays import positive
 from nao_kin.chain import into_limits
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim
@@ -22,6 +23,7 @@ from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.limits import packed_rules
 from nao_kin.kernels.motion import packed_joints, place
+from nao_kin.tolerances import Tolerances
 
 if TYPE_CHECKING:
     import pinocchio as pin
@@ -29,9 +31,8 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
     from nao_kin.ik.target import Target
-    from nao_kin.tolerances import Tolerances
 
-__all__ = ["PATIENCE_ONCE_REACHED", "POLISHED", "REACHED", "Budget", "Update", "run_reference"]
+__all__ = ["PATIENCE_ONCE_REACHED", "POLISHED", "REACHED", "Budget", "Update", "require_options", "run_reference"]
 
 
 REACHED: Final = 0.99
@@ -93,10 +94,22 @@ class Budget:
             value = getattr(self, name)
             if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
                 raise InvalidInputError(f"budget, {name}", f"an integer from {least} to {most}", repr(value)[:40])
-        if not isinstance(self.largest_step, (int, float)) or not 0.0 < self.largest_step < math.inf:
-            raise InvalidInputError("budget, largest_step", "a finite number > 0", repr(self.largest_step))
+        positive(self.largest_step, "budget, largest_step")
 
 
+def require_options(budget: object, tolerances: object) -> None:
+    """Does nothing for a budget, or None, and tolerances.
+
+    Raises:
+        InvalidInputError: Something else.
+    """
+    if budget is not None and not isinstance(budget, Budget):
+        raise InvalidInputError("budget", "a nao_kin.Budget, or None for the method's own", repr(budget)[:60])
+    if not isinstance(tolerances, Tolerances):
+        raise InvalidInputError("tolerances", "nao_kin.Tolerances", repr(tolerances)[:60])
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a huge error's square is infinite; the loop copes with that
 def run_reference(
     problem: Problem, method: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool = False
 ) -> Run:

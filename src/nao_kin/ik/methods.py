@@ -6,26 +6,30 @@ import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 import pinocchio as pin
 
+from nao_kin.arrays import positive
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import layout
 from nao_kin.ik.catalogue import METHODS, Method, method_named
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
-from nao_kin.ik.loop import Budget, Update, run_reference
+from nao_kin.ik.loop import Budget, Update, require_options, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
-from nao_kin.ik.scales import scales_of
+from nao_kin.ik.scales import chain_scales
 from nao_kin.ik.target import KINDS, Target, TargetLike
+from nao_kin.ik.tree import solve_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
+from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
+    from nao_kin.ik.tree_problem import TreeResult
 
 __all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
 
@@ -53,6 +57,7 @@ _FLOAT64 = np.dtype(np.float64)
 _IDENTITY, _PLACE = np.eye(4), (slice(0, 3), 3)
 
 
+@overload
 def solve(
     chain: Chain,
     target: TargetLike,
@@ -66,11 +71,42 @@ def solve(
     trace: bool = False,
     parameters: Mapping[str, float] | None = None,
     jump: float | None = None,
-) -> IKResult:
+) -> IKResult: ...
+
+
+@overload
+def solve(
+    chain: Tree,
+    target: Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+) -> TreeResult: ...
+
+
+def solve(
+    chain: Chain | Tree,
+    target: TargetLike | Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    engine: Engine = "compiled",
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+    jump: float | None = None,
+) -> IKResult | TreeResult:
     """Joints that bring the tip to a target, measured again before they are returned.
 
     Args:
-        chain: The chain.
+        chain: The chain; or a tree, with targets by tip name, which is `nao_kin.solve_tree` with its usual options.
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
         q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
             inside and the result says so. By default all zeros, moved inside.
@@ -93,6 +129,13 @@ def solve(
         UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
             matches.
     """
+    if isinstance(chain, Tree):
+        if engine != "compiled":
+            raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
+        if jump is not None:
+            raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
+        options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
+        return solve_tree(chain, cast("Any", target), q0, trace=trace, parameters=parameters, **options)
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
         wanted = Target("pose", target.copy())
@@ -110,7 +153,7 @@ def solve(
         return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine, parameters, jump))
     ready = prepared(problem, method, budget, seed, parameters)
     start = ready.neutral if q0 is None else start_of(chain, q0)
-    allowed = math.inf if jump is None else _positive(jump)
+    allowed = math.inf if jump is None else positive(jump, "jump", "[rad or m]", endless=True)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
     if trace and outcome[layout.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
@@ -121,7 +164,7 @@ def solve(
         Target.of(target)  # says it better, if it is the target that makes no sense
         raise
     if jump is not None:
-        run.start, run.jump = start, allowed
+        run.start, run.jump = start.copy(), allowed  # the caller may go on with theirs
     return judge(problem, run)
 
 
@@ -139,12 +182,12 @@ def prepared(
         seed = _integer(seed)
     # The usual options make a key that costs little to compare.
     usual = tolerances is TOLERANCES and budget is None and seed == 0 and not parameters
-    options = None if usual else (tolerances, budget, seed, tuple(sorted((parameters or {}).items())))
+    options = None if usual else (tolerances, budget, seed, _told_apart(parameters or {}))
     key = (method, target.kind, target.weights, options)
     try:
         return _PREPARED[problem.chain][key]
     except (KeyError, TypeError):
-        chosen = _checked(problem, method, seed)
+        chosen = _checked(problem, method, seed, budget)
     kept = _PREPARED.setdefault(problem.chain, {})
     if len(kept) >= _KEPT:
         kept.clear()
@@ -162,6 +205,13 @@ def prepared(
     )
     ready = kept[key] = Prepared(tables, settings, neutral(problem.chain))
     return ready
+
+
+def _told_apart(parameters: object) -> object:
+    """What tells parameters apart that are not yet checked: with their types, as True equals 1.0 and is no number."""
+    if not isinstance(parameters, Mapping):
+        return parameters
+    return tuple((name, type(value), value) for name, value in parameters.items())
 
 
 def start_of(chain: Chain, q0: ArrayLike | Mapping[str, float]) -> Floats:
@@ -189,39 +239,34 @@ def _run_in_python(
 ) -> Run:
     if engine != "reference":
         raise InvalidInputError("engine", "'compiled' or 'reference'", repr(engine))
-    chosen, chain = _checked(problem, method, seed), problem.chain
+    chosen, chain = _checked(problem, method, seed, budget), problem.chain
     start = neutral(chain) if q0 is None else configuration(chain, start_of(chain, q0))
     update = _update(problem, chosen, tables_of(chain, seed), parameters)
     run = run_reference(problem, update, start, budget or chosen.budget, np.random.default_rng(seed), trace)
     if jump is not None:
-        run.start, run.jump = start, _positive(jump)
+        run.start, run.jump = start, positive(jump, "jump", "[rad or m]", endless=True)
     return run
 
 
 def _update(problem: Problem, method: Method, tables: Tables, parameters: Mapping[str, float] | None) -> Update:
     """The method with its parameters, those that depend on the chain from its stored configurations."""
     chain = problem.chain
-    scales = scales_of(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
+    scales = chain_scales(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
     return Update(method.code, method.tuned(parameters or {}, scales), method.orientation_error)
 
 
-def _checked(problem: Problem, method: str, seed: int) -> Method:
+def _checked(problem: Problem, method: str, seed: int, budget: Budget | None) -> Method:
     if not hasattr(problem.chain, "joint_path"):
         expected = "a chain, as robot.chain('left_arm') gives one"
         raise InvalidInputError("chain", expected, f"a {type(problem.chain).__name__}")
     if _integer(seed) < 0:
         raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
+    require_options(budget, problem.tolerances)
     chosen = method_named(method)
     refused = chosen.refusal(problem.chain, problem.target)
     if refused is not None:
         raise refused
     return chosen
-
-
-def _positive(jump: object) -> float:
-    if isinstance(jump, bool) or not isinstance(jump, int | float | np.floating) or not jump > 0.0:
-        raise InvalidInputError("jump", "a number > 0 [rad or m]", repr(jump))
-    return float(jump)
 
 
 def _integer(seed: object) -> int:

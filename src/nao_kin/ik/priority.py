@@ -60,10 +60,12 @@ def prioritised_step(tasks: Sequence[Task], rule: Update, at_lower: Mask, at_upp
 def _share(task: Task, above: Sequence[Floats], step: Floats, rule: Update, at_lower: Mask, at_upper: Mask) -> Floats:
     """What a task adds to the step of those above it."""
     rest = task.e - task.J @ step
-    uphill = (task.J @ _projector(above, np.zeros_like(at_lower))).T @ rest
-    held = _outward(uphill, at_lower, at_upper)
+    J = task.J @ _projector(above, np.zeros_like(at_lower))
+    held = _outward(J.T @ rest, at_lower, at_upper)
     while True:
-        share: Floats = rule.proposals(task.J @ _projector(above, held), rest)[0]
+        if held.any():
+            J = task.J @ _projector(above, held)
+        share: Floats = rule.proposals(J, rest)[0]
         # Holding one joint can turn another outwards; each turn holds more of them, so this ends.
         pushed = ~held & _outward(step + share, at_lower, at_upper) & (share != 0.0)
         if not pushed.any():

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.target import TargetKind
 
-__all__ = ["Scales", "scales_of"]
+__all__ = ["Scales", "chain_scales", "scales_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +28,13 @@ class Scales:
     manipulability: float
 
 
-def scales_of(chain: Chain, kind: TargetKind, configurations: Floats) -> Scales:
+def scales_of(jacobians: Floats) -> Scales:
+    """The scales over some Jacobians (K, m, n)."""
+    values = np.linalg.svd(jacobians, compute_uv=False)
+    return Scales(float(values.max()), float(values.prod(axis=1).max()))
+
+
+def chain_scales(chain: Chain, kind: TargetKind, configurations: Floats) -> Scales:
     """The scales of a chain for a kind of target, seen at the configurations (K, n)."""
     bound = {"position": slice(0, 3), "orientation": slice(3, 6)}.get(kind, slice(0, 6))
-    values = np.linalg.svd(np.array([chain.jacobian(q)[bound] for q in configurations]), compute_uv=False)
-    return Scales(float(values.max()), float(values.prod(axis=1).max()))
+    return scales_of(np.array([chain.jacobian(q)[bound] for q in configurations]))

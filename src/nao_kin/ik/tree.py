@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from nao_kin.chain import configuration, neutral
-from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik.catalogue import METHODS
-from nao_kin.ik.loop import Budget, Update
+from nao_kin.arrays import positive
+from nao_kin.chain import configuration, neutral, random_configurations
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik.catalogue import METHODS, method_named
+from nao_kin.ik.loop import Budget, Update, require_options
+from nao_kin.ik.scales import scales_of
 from nao_kin.ik.target import Target
+from nao_kin.ik.tree_aim import aims_of
 from nao_kin.ik.tree_loop import run_tree
 from nao_kin.ik.tree_problem import TreeProblem, TreeResult, judge_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
@@ -23,6 +26,9 @@ if TYPE_CHECKING:
     from nao_kin.ik.target import TargetLike
 
 __all__ = ["solve_tree"]
+
+SEEN: Final = 64
+"""Random configurations that gains and dampings are scaled by."""
 
 
 def solve_tree(
@@ -37,6 +43,7 @@ def solve_tree(
     weights: Mapping[str, float] | None = None,
     priority: Sequence[str] | None = None,
     trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
 ) -> TreeResult:
     """Joints that bring several tips to their targets at once, each measured again before they are returned.
 
@@ -49,7 +56,7 @@ def solve_tree(
         targets: Tip name to target, each as `nao_kin.solve` takes one. Tips that are not named are free.
         q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
             inside and the result says so. By default all zeros, moved inside.
-        method: A name in `nao_kin.METHODS` of a method with an update rule.
+        method: A name in `nao_kin.METHODS` of a method that serves several tips.
         tolerances: When a target counts as reached.
         budget: How long to try; iterations and restarts of each group of tips that share joints.
         seed: For the starts; the same call gives the same result.
@@ -58,6 +65,7 @@ def solve_tree(
         priority: Tips in order of precedence. Each is served with what freedom those before it leave, and disturbs none
             of them; tips not named come last, all alike. By default all tips count alike.
         trace: Keep every iterate in the result.
+        parameters: What to tune the method with, see `nao_kin.solve`.
 
     Returns:
         A result whether solved or not: ask ``result.solved`` and read ``result.status`` and ``result.missed``.
@@ -67,12 +75,14 @@ def solve_tree(
         UnknownNameError: No such tip or method, or the start names a joint that does not exist; carries near matches.
     """
     _require_tree(tree)
+    require_options(budget, tolerances)
     wanted = _targets(tree, targets)
     levels = _levels(tree, wanted, priority)
     problem = TreeProblem(tree, wanted, _weights(tree, levels, weights), levels, tolerances)
     start = neutral(tree) if q0 is None else tree.q_of(q0) if isinstance(q0, Mapping) else configuration(tree, q0)
-    rng = np.random.default_rng(_seed(seed))
-    return judge_tree(problem, run_tree(problem, _rule(method, wanted), start, budget or Budget(), rng, trace))
+    update = _update(problem, method, parameters or {}, np.random.default_rng(_seed(seed)))
+    budget = budget or method_named(method).budget
+    return judge_tree(problem, run_tree(problem, update, start, budget, np.random.default_rng(seed), trace))
 
 
 def _require_tree(tree: object) -> None:
@@ -117,25 +127,43 @@ def _weights(tree: Tree, levels: Sequence[Sequence[str]], weights: Mapping[str, 
     given = {} if weights is None else weights
     if not isinstance(given, Mapping):
         raise InvalidInputError("weights", "numbers by tip name, as {'LArm': 2.0}", repr(weights)[:60])
-    for tip, weight in given.items():
+    for tip in given:
         tree.require_tip(tip)
         if not any(tip in level for level in levels):
             raise InvalidInputError("weights", "tips that have a target", repr(tip))
-        if isinstance(weight, bool) or not isinstance(weight, (int, float, np.number)) or not 0.0 < weight < np.inf:
-            raise InvalidInputError(f"weight of {tip}", "a finite number > 0", repr(weight))
-    every = {tip: float(given.get(tip, 1.0)) for level in levels for tip in level}
+    checked = {tip: positive(weight, f"weight of {tip}") for tip, weight in given.items()}
+    every = {tip: checked.get(tip, 1.0) for level in levels for tip in level}
     return {tip: every[tip] / max(every[other] for other in level) for level in levels for tip in level}
 
 
-def _rule(method: str, wanted: Mapping[str, Target]) -> Update:
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
-    chosen = METHODS[method]
-    for tip, target in wanted.items():
-        if target.kind not in chosen.targets:
-            expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
-            raise InvalidInputError(f"target of {tip}", expected, f"a {target.kind} target")
-    return Update(chosen.code, chosen.tuned({}, None))
+def _update(problem: TreeProblem, method: str, parameters: Mapping[str, float], rng: np.random.Generator) -> Update:
+    """The method with its parameters, those that depend on the tree from random configurations."""
+    chosen, tree = method_named(method), problem.tree
+    if not chosen.several_tips:
+        able = ", ".join(name for name, row in METHODS.items() if row.several_tips)
+        raise InvalidInputError("method", f"one that serves several tips: {able}", repr(method))
+    for tip, target in problem.targets.items():
+        refused = chosen.refusal(tree.chains[tip], target)
+        if refused is not None:
+            raise InvalidInputError(f"{refused.what}, tip {tip}", refused.expected, refused.got)
+    if chosen.hinges:
+        _require_plain(problem, method)
+    if not chosen.scaled:
+        return Update(chosen.code, chosen.tuned(parameters, None))
+    aims = aims_of(problem).values()
+    stacks = [np.vstack([one.task(q, one.look(q)).J for one in aims]) for q in random_configurations(tree, SEEN, rng)]
+    return Update(chosen.code, chosen.tuned(parameters, scales_of(np.array(stacks))))
+
+
+def _require_plain(problem: TreeProblem, method: str) -> None:
+    """A method that moves points knows neither precedence nor weights, and each joint has to have its own column."""
+    if len(problem.levels) > 1 or set(problem.weights.values()) != {1.0}:
+        raise InvalidInputError("priority and weights", f"none for method {method!r}", "some")
+    for tip in problem.targets:
+        spread, shift = problem.tree.spreads[tip], problem.tree.shifts[tip]
+        if not (np.isin(spread, (0.0, 1.0)).all() and (spread.sum(axis=1) == 1.0).all() and not shift.any()):
+            expected = f"a motor of its own for each joint of {tip} for method {method!r}"
+            raise InvalidInputError("tree", expected, "joints that follow another one")
 
 
 def _seed(seed: Any) -> int:

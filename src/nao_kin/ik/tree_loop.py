@@ -9,18 +9,24 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.chain import into_limits, random_configurations
-from nao_kin.ik.loop import POLISHED, REACHED
+from nao_kin.ik.catalogue import METHODS
+from nao_kin.ik.fabrik_tree import tree_sweep
+from nao_kin.ik.geometric import FABRIK
+from nao_kin.ik.loop import PATIENCE_ONCE_REACHED, POLISHED, REACHED, Update
 from nao_kin.ik.priority import prioritised_step
 from nao_kin.ik.problem import Status
+from nao_kin.ik.rules import DAMPED
 from nao_kin.ik.starts import STORED
 from nao_kin.ik.tree_aim import Aim, aims_of, apart, stacked, unreachable_last
 from nao_kin.ik.tree_problem import TreeRun, TreeTrace
+from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.motion import packed_joints
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.loop import Budget, Update
+    from nao_kin.ik.loop import Budget
     from nao_kin.ik.tree_aim import Levels, Seen
     from nao_kin.ik.tree_problem import TreeProblem
     from nao_kin.tolerances import Tolerances
@@ -30,11 +36,18 @@ if TYPE_CHECKING:
 
 __all__ = ["run_tree"]
 
-SETTLING: Final = 100
+USUAL: Final = Update(METHODS["lm"].code, METHODS["lm"].tuned({}, None))
+"""What brings tips back where the method itself has no step for some of them only."""
+
+SETTLING: Final = 200
 """Iterations at most that look for the best compromise where not all targets can be met."""
 
-SHORTEST: Final = 1e-4
-"""A compromise is found when no step is better that is longer than this part of the rule's."""
+SHORTEST: Final = 1e-6
+"""A compromise is found when the largest joint step that makes it better is shorter than this [rad or m]."""
+
+AT_END: Final = 1e-6
+"""A joint this near to an end of its range [rad or m] is at it for a compromise: the shortest step of all would be cut
+off there, and what is left of it need not be better."""
 
 REPAIRS: Final = 4
 """Steps at most that bring the tips which come first back, after a step of those which come after them."""
@@ -43,8 +56,9 @@ SLACK: Final = 1e-6
 """Relative change of a squared error that counts as none, so that tips in second place may still improve."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a huge error's square is infinite; the loop copes with that
 def run_tree(
-    problem: TreeProblem, rule: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool
+    problem: TreeProblem, method: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool
 ) -> TreeRun:
     """Runs starts until every tip is at its target or the budget is spent, and returns the best joints found.
 
@@ -57,7 +71,7 @@ def run_tree(
     iterations, starts, ended, rows = 0, 0, set[Status](), list["TraceRow"]()
     for group in apart(tree, problem.targets):
         levels = unreachable_last(problem.levels, group, aims)
-        search = _Search(tree, aims, levels, problem.tolerances, rule, budget, rows if keep_trace else None)
+        search = _Search(tree, aims, levels, problem.tolerances, method, budget, rows if keep_trace else None)
         ended.add(search.run(q, rng))
         q, iterations, starts = search.best_q, iterations + search.iterations, max(starts, search.starts)
     misses = {tip: one.misses_by for tip, one in aims.items() if one.misses_by}
@@ -74,7 +88,7 @@ class _Search:
     aims: Mapping[str, Aim]
     levels: Levels
     tolerances: Tolerances
-    rule: Update
+    method: Update
     budget: Budget
     trace: list[TraceRow] | None
     best_q: Floats = field(default_factory=lambda: np.empty(0))
@@ -129,29 +143,49 @@ class _Search:
             for k, level_merit in enumerate(merits):
                 if max(level_merit, POLISHED) < 0.5 * halved[k]:
                     halved[k], waited = max(level_merit, POLISHED), 0
-            if waited >= self.budget.patience:
+            if waited >= (min(self.budget.patience, PATIENCE_ONCE_REACHED) if reached else self.budget.patience):
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
-            step = self._step(q, seen, levels)
-            if not np.isfinite(step).all():
+            q = self._advance(q, seen, levels)
+            if not np.isfinite(q).all():
                 return Status.NOT_FINITE
-            q = into_limits(self.tree, q + step)
         return Status.SOLVED if reached else Status.BUDGET_SPENT
 
+    def _advance(self, q: Floats, seen: Mapping[str, Seen], levels: Levels) -> Floats:
+        """The joints after one iteration: a step of the update rule, or a sweep."""
+        if self.method.rule != FABRIK:
+            return into_limits(self.tree, q + self._step(q, seen, levels, self.method))
+        self.iterations += 1
+        tips = [tip for level in levels for tip in level]
+        chains = [self.aims[tip].chain for tip in tips]
+        return tree_sweep(
+            paths=[packed_joints(chain.joint_path) for chain in chains],
+            columns=[self.tree.columns[tip] for tip in tips],
+            limits=np.array([self.tree.lower, self.tree.upper]),
+            coupled=packed_rules(self.tree.limit_rules, self.tree.joint_names),
+            goals=[self.aims[tip].target.goal for tip in tips],
+            q=q,
+        )
+
     def _settle(self) -> None:
-        """Takes the best joints on to where no step makes an error smaller without one of a level above growing."""
-        q, stride = self.best_q, 1.0
+        """Takes the best joints on to where no step makes an error smaller without one of a level above growing.
+
+        Levenberg's damping, more after a step that was worse and less after one that was better: close to what cannot
+        be met the error's own curvature counts, of which a method for reachable targets knows nothing.
+        """
+        q, damping = self.best_q, 1e-3
         seen = self._look(q)
         for _ in range(min(SETTLING, self.budget.iterations)):
-            step = self._step(q, seen, self.levels)
-            if stride < SHORTEST or not np.isfinite(step).all():
+            damped = Update(DAMPED, (1.0, math.sqrt(damping)))
+            step = self._step(q, seen, self.levels, damped, AT_END)
+            if not np.isfinite(step).all() or np.abs(step).max() < SHORTEST:
                 break
-            trial, nearer = self._repaired(into_limits(self.tree, q + stride * step))
+            trial, nearer = self._repaired(into_limits(self.tree, q + step))
             if self._better(nearer, seen):
-                q, seen, stride = trial, nearer, min(1.0, 2.0 * stride)
+                q, seen, damping = trial, nearer, damping / 2.0
             else:
-                stride *= 0.25
+                damping *= 4.0
         self.best_q = q
 
     def _repaired(self, q: Floats) -> tuple[Floats, dict[str, Seen]]:
@@ -160,7 +194,7 @@ class _Search:
         for _ in range(REPAIRS if above else 0):
             if max(seen[tip].merit(self.tolerances) for level in above for tip in level) <= POLISHED:
                 break
-            step = self._step(q, seen, above)
+            step = self._step(q, seen, above, USUAL if self.method.rule == FABRIK else self.method, AT_END)
             if not np.isfinite(step).all():
                 break
             q = into_limits(self.tree, q + step)
@@ -173,10 +207,10 @@ class _Search:
                 return this < that
         return False
 
-    def _step(self, q: Floats, seen: Mapping[str, Seen], levels: Levels) -> Floats:
+    def _step(self, q: Floats, seen: Mapping[str, Seen], levels: Levels, rule: Update, margin: float = 0.0) -> Floats:
         self.iterations += 1
         tasks = [stacked(self.aims[tip].task(q, seen[tip]) for tip in level) for level in levels]
-        step = prioritised_step(tasks, self.rule, q <= self.tree.lower, q >= self.tree.upper)
+        step = prioritised_step(tasks, rule, q <= self.tree.lower + margin, q >= self.tree.upper - margin)
         largest = float(np.abs(step).max())
         return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
 

@@ -63,6 +63,10 @@ class TreeTrace:
     rotation_error: Floats
     start: NDArray[np.int64]
 
+    def __post_init__(self) -> None:
+        for array in (self.q, self.position_error, self.rotation_error, self.start):
+            array.flags.writeable = False
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TreeRun:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import typer
 
+from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
+from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
@@ -26,8 +28,10 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(explain)
 bench.command()(methods)
 bench.command()(mutants)
 bench.command()(practicum)
+bench.command()(closed)
 bench.command()(startup)
 bench.command()(tips)

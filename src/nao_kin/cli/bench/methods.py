@@ -27,6 +27,7 @@ _SLOW_TO_POSES = {
     "combination": "where the arm is nearly singular the transpose's small step often comes closer than the long one",
     "ccd": "joints take turns, and where several are needed together each alone can do little",
 }
+_TWO_HANDS = {"iterations": 300, "restarts": 10, "patience": 50}  # the loop for several tips is Python
 _SAMPLES = 200_000  # configurations that the reach is seen in
 
 
@@ -52,8 +53,9 @@ def methods(
         _sheet("easy", f"near targets, one start, up to 5000 iterations; {targets} each", easy),
         _sheet("alone", "full range, one start, up to 5000 iterations", alone),
         _sheet("restarts", "full range, with restarts", again),
-        _sheet("hard", "edge of reach and singularity, one start, up to 5000 iterations", hard),
+        _sheet("hard", "edge of reach and singularity, one start, up to 5000 iterations", hard, timed=True),
         _time_sheet(again),
+        _two_hands(max(10, targets // 5), seed),
     ]
     everything = [*easy, *alone, *again, *hard]
     bounds = [*_easy_goals(easy), *_restart_goals(again), _honesty(everything)]
@@ -93,8 +95,8 @@ def _everybody(targets: TargetSet, long: bool = False) -> list[Outcome]:
     return [run(targets, name, LONG if long else None) for name in progress(able, targets.name, len(able))]
 
 
-def _sheet(name: str, title: str, outcomes: list[Outcome]) -> Sheet:
-    """One row a method, success and iterations of each set side by side."""
+def _sheet(name: str, title: str, outcomes: list[Outcome], timed: bool = False) -> Sheet:
+    """One row a method: success and iterations of each set side by side; with `timed`, the time of a solve as well."""
     sets = list(dict.fromkeys(outcome.of.name for outcome in outcomes))
     short = {outcome.of.name: outcome.of.short for outcome in outcomes}
     rows: dict[str, dict[str, Any]] = {}
@@ -103,9 +105,12 @@ def _sheet(name: str, title: str, outcomes: list[Outcome]) -> Sheet:
         row[f"success_{k}"] = outcome.success
         if not math.isnan(outcome.median_iterations):
             row[f"iterations_{k}"] = outcome.median_iterations
+            if timed:
+                row[f"median_{k}"] = outcome.median_seconds * 1e6
     headings = [Heading("method", "method")]
     for k, of in enumerate(sets):
         headings += [Heading(f"success_{k}", f"{short[of]} %", ".1f"), Heading(f"iterations_{k}", "it.", ".0f")]
+        headings += [Heading(f"median_{k}", "µs", ".0f")] if timed else []
     return Sheet(name, title, tuple(headings), list(rows.values()))
 
 
@@ -134,6 +139,33 @@ def _time_sheet(outcomes: list[Outcome]) -> Sheet:
         tuple(headings),
         list(rows.values()),
     )
+
+
+def _two_hands(count: int, seed: int) -> Sheet:
+    """Both hands of the NAO at once, from the torso and from a foot, by every method that serves several tips."""
+    from nao_kin.cli.bench.tip_targets import attempt, reachable_wishes
+    from nao_kin.ik.catalogue import METHODS
+    from nao_kin.ik.loop import Budget
+    from nao_kin.robot import load
+
+    robot, rows, budget = load("nao"), list[dict[str, Any]](), Budget(**_TWO_HANDS)
+    trees = {base: robot.tree(base, ["LArm", "RArm"]) for base in ("torso", "l_sole")}
+    wishes = {base: reachable_wishes(tree, "position", count, seed) for base, tree in trees.items()}
+    for name in (name for name, method in METHODS.items() if method.several_tips):
+        row: dict[str, Any] = {"method": name}
+        for base, tree in trees.items():
+            found = attempt(tree, wishes[base], f"{name}, both hands from {base}", method=name, budget=budget)
+            row |= {f"{base}_{key}": found[key] for key in ("solved", "iterations")}
+        rows.append(row)
+    headings = (
+        Heading("method", "method"),
+        Heading("torso_solved", "from torso %", ".1f"),
+        Heading("torso_iterations", "it.", ".0f"),
+        Heading("l_sole_solved", "from l_sole %", ".1f"),
+        Heading("l_sole_iterations", "it.", ".0f"),
+    )
+    title = f"both hands at once, positions, at most {_TWO_HANDS['restarts']} restarts; {count} targets"
+    return Sheet("two_hands", title, headings, rows)
 
 
 def _easy_goals(outcomes: list[Outcome]) -> list[Goal]:

@@ -62,17 +62,11 @@ _SURVIVORS = (
 
 def _trials(document: str | None) -> list[Trial]:
     from nao_kin.cli.output import progress
-    from nao_kin.documents.claim import Verdict, judged
     from nao_kin.documents.ledger import claims
-    from nao_kin.documents.mutants import mutants as spoilt
-    from nao_kin.documents.mutants import tried
+    from nao_kin.documents.mutants import trials_of
 
     every = claims(document=document)
-    found = list[Any]()
-    for claim in progress(every, "claims", len(every)):
-        if judged(claim).verdict in (Verdict.holds, Verdict.holds_under_convention):
-            found += [tried(mutant) for mutant in spoilt(claim)]
-    return found
+    return [trial for claim in progress(every, "claims", len(every)) for trial in trials_of(claim)]
 
 
 def _row(name: str, trials: list[Trial]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ __all__ = ["practicum"]
 
 _COUNTS = (128, 64, 32, 16, 8, 4, 2, 1)
 _ENOUGH = 0.01  # [m] task 1g
-_DISTANCES = (("within 5 cm", 0.05), ("anywhere in reach", None))
+_DISTANCES = (("near", "within 5 cm", 0.05), ("anywhere", "anywhere in reach", None))
 
 
 def practicum(
@@ -33,12 +33,12 @@ def practicum(
 
     machine, rng = Machine(), np.random.default_rng(seed)
     sheets, answers, bounds = list[Sheet](), list[str](), list[Goal]()
-    for where, distance in _DISTANCES:
+    for name, where, distance in _DISTANCES:
         starts, wanted = _problems(targets, distance, rng)
         runs = _both(starts, wanted, where)
         rows = [_row(count, runs) for count in _COUNTS]
-        sheets.append(Sheet(f"1ef_{len(sheets)}", f"1e, 1f: targets {where}, {targets} of them", _HEADINGS, rows))
-        checked, faults, silent = _checked(starts, wanted, where)
+        sheets.append(Sheet(f"task_1ef_{name}", f"1e, 1f: targets {where}, {targets} of them", _HEADINGS, rows))
+        checked, faults, silent = _checked(starts, wanted, name, where)
         sheets.append(checked)
         answers += ["", _answer(where, rows), faults]
         bounds.append(Goal(f"1e, {where}: pseudo-inverse < 1 cm, %", rows[0]["pseudo_reached"], 90.0))
@@ -83,11 +83,11 @@ def _both(starts: Floats, wanted: Floats, where: str) -> dict[str, Floats]:
     from nao_kin.cli.output import progress
     from nao_kin.documents.practicum import jaco2
     from nao_kin.documents.practicum_ik import ik_pseudo_inverse, ik_transpose
-    from nao_kin.ik.scales import scales_of
+    from nao_kin.ik.scales import chain_scales
 
     arm = jaco2()
     configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (256, 6))
-    gain = 1.5 / scales_of(arm, "position", configurations).singular_value ** 2
+    gain = 1.5 / chain_scales(arm, "position", configurations).singular_value ** 2
     pairs = list(zip(starts, wanted, strict=True))
     methods: dict[str, Callable[[Floats, Floats], TaskResult]] = {
         "transpose": lambda q, p: ik_transpose(q, p, gain=gain, chain=arm),
@@ -124,7 +124,7 @@ def _answer(where: str, rows: list[dict[str, Any]]) -> str:
     )
 
 
-def _checked(starts: Floats, wanted: Floats, where: str) -> tuple[Sheet, str, int]:
+def _checked(starts: Floats, wanted: Floats, name: str, where: str) -> tuple[Sheet, str, int]:
     """Task 1g: how often the pseudo-inverse jumps or misses, and how many faults the check is silent about."""
     import numpy as np
 
@@ -154,5 +154,5 @@ def _checked(starts: Floats, wanted: Floats, where: str) -> tuple[Sheet, str, in
         f"jump by more than a quarter turn, and {row['missed']} miss 1 cm; the largest move of a joint is "
         f"{row['largest']:.3g} rad. {int(said.sum())} carry a message that says which."
     )
-    sheet = Sheet(f"1g_{where}", f"1g: IK_Pseudo with its checks, targets {where}", headings, [row])
+    sheet = Sheet(f"task_1g_{name}", f"1g: IK_Pseudo with its checks, targets {where}", headings, [row])
     return sheet, answer, int(((missed | jumped) & ~said).sum())

@@ -59,11 +59,18 @@ def with_far_tip(tree: Tree, tip: str, wishes: Sequence[Wish], seed: int) -> lis
 
 
 def attempt(
-    tree: Tree, wishes: Sequence[Wish], what: str, *, priority: Sequence[str] | None, budget: Budget | None = None
+    tree: Tree,
+    wishes: Sequence[Wish],
+    what: str,
+    *,
+    priority: Sequence[str] | None = None,
+    budget: Budget | None = None,
+    method: str = "lm",
 ) -> dict[str, Any]:
     """How many are solved [%], how many tips are served [%], and what the referee says of it."""
     referees = _referees(tree)
-    found = [solve_tree(tree, wish, priority=priority, budget=budget) for wish in progress(wishes, what, len(wishes))]
+    asked = progress(wishes, what, len(wishes))
+    found = [solve_tree(tree, wish, priority=priority, budget=budget, method=method) for wish in asked]
     served = {tip: sum(_served(referees[tip], r, tip) for r in found) for tip in referees}
     solved = [_confirmed(referees, r) for r in found]
     percent = 100.0 / len(wishes)

@@ -25,6 +25,7 @@ _TOUR = (
     ("poses, left first", "pose", _HANDS, ("LArm",)),
     ("positions, head turned", "position", (*_HANDS, "Head"), ()),
 )
+_FAR_TOUR = (("torso", ()), ("l_sole", ()), ("l_sole", ("LArm",)))  # from the torso, the hands share no joint
 _NOTES = (
     "Targets: the tips of random joints within all limits. Solved: Pinocchio on the whole model confirms every tip to "
     "1e-6 m and 1e-6 rad, every limit, and the motor that both hip joints share.",
@@ -62,7 +63,7 @@ def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]
             row = attempt(tree, wishes, f"{what} from {base}", priority=priority or None)
             rows.append({"base": base, "what": what} | row)
             bounds.append(Goal(f"{base}: {what}, solved %", row["solved"], _SOLVED_PERCENT))
-            bounds.append(Goal(f"{base}: {what}, falsely solved", row["false"], 0.0, at_least=False))
+    bounds.append(Goal("reachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("what", "both hands"),
@@ -75,19 +76,22 @@ def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]
 
 
 def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]]:
-    """The right hand wanted where it cannot be, the left one where it can."""
+    """The right hand wanted where it mostly cannot be, the left one where it can."""
     from nao_kin.cli.bench.tip_targets import attempt, reachable_wishes, with_far_tip
     from nao_kin.ik.loop import Budget
 
-    rows, bounds = list[dict[str, Any]](), list[Goal]()
-    for base in _BASES:
+    few, rows = Budget(iterations=50, restarts=5), list[dict[str, Any]]()
+    for base, priority in _FAR_TOUR:
         tree = robot.tree(base, _HANDS)
         wishes = with_far_tip(tree, "RArm", reachable_wishes(tree, "position", targets, seed), seed)
-        for priority in (None, ("LArm", "RArm")):
-            row = attempt(tree, wishes, f"unreachable from {base}", priority=priority, budget=Budget(restarts=10))
-            rows.append({"base": base, "priority": "left first" if priority else "alike"} | row)
-            bounds.append(Goal(f"{base}: unreachable, falsely solved", row["false"], 0.0, at_least=False))
-        bounds.append(Goal(f"{base}: left first, left hand served %", rows[-1]["LArm"], _SOLVED_PERCENT))
+        row = attempt(tree, wishes, f"unreachable from {base}", priority=priority or None, budget=few)
+        rows.append({"base": base, "priority": "left first" if priority else "alike"} | row)
+    bounds = [
+        Goal(f"{base}: left first, left hand served %", row["LArm"], _SOLVED_PERCENT)
+        for (base, priority), row in zip(_FAR_TOUR, rows, strict=True)
+        if priority
+    ]
+    bounds.append(Goal("unreachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("priority", "hands count"),
