@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
 
-__all__ = ["FORMATS", "UnreadableMeshError", "read_bodies"]
+__all__ = ["FORMATS", "LargeMeshError", "UnreadableMeshError", "read_bodies"]
 
 FORMATS = ("dae", "obj", "off", "ply", "stl")
 """Formats that carry their geometry in one file and no pictures, by suffix."""
@@ -27,6 +27,10 @@ FORMATS = ("dae", "obj", "off", "ply", "stl")
 
 class UnreadableMeshError(ValueError):
     """A mesh file cannot be read; the text is the reason."""
+
+
+class LargeMeshError(UnreadableMeshError):
+    """A mesh file is larger than is read here, which says nothing against it."""
 
 
 def read_bodies(path: Path) -> list[tuple[Any, Floats]]:
@@ -45,7 +49,7 @@ def read_bodies(path: Path) -> list[tuple[Any, Floats]]:
     with path.open("rb") as file:
         content = file.read(LIMITS.mesh_bytes + 1)
     if len(content) > LIMITS.mesh_bytes:
-        raise UnreadableMeshError(f"larger than {LIMITS.mesh_bytes} bytes")
+        raise LargeMeshError(f"larger than {LIMITS.mesh_bytes} bytes")
     if kind == "dae":
         content = _harmless_xml(content)
     return _placed_bodies(_load(content, kind))
@@ -62,6 +66,8 @@ def _harmless_xml(content: bytes) -> bytes:
     try:
         root = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:
+        if "XML_PARSE_HUGE" in str(error):
+            raise LargeMeshError("a list of numbers in it is longer than the XML parser reads") from error
         raise UnreadableMeshError(f"not well-formed XML ({error})") from error
     if root.getroottree().docinfo.internalDTD is not None:
         raise UnreadableMeshError("it has a DOCTYPE, which a mesh does not need")
