@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
+    from nao_kin.checks.checker import check as check
+    from nao_kin.checks.finding import Finding as Finding
+    from nao_kin.checks.finding import Report as Report
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
@@ -49,16 +52,19 @@ _HOME = {
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",
+    "Finding": "checks.finding",
     "FollowResult": "ik.along",
     "IKResult": "ik.problem",
     "LimitRule": "chain",
     "METHODS": "ik.methods",
     "NaoKinError": "errors",
+    "Report": "checks.finding",
     "Robot": "robot",
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
     "UrdfChain": "urdf_chain",
+    "check": "checks.checker",
     "compare": "crosscheck",
     "document_chain": "documents.chains",
     "document_chain_names": "documents.chains",
