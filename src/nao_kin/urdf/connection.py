@@ -122,6 +122,8 @@ def mimic_cycles(outline: Outline) -> Iterator[Defect]:
     leaders = {name: mimic.get("joint", "") for name, mimic in mimic_of.items()}
     found: list[Defect] = []
     for ring in rings(leaders):
+        if len(ring) == 1:
+            continue  # reported as mimicking itself
         mimic = min((mimic_of[name] for name in ring), key=line_of)
         message = f"The joints {_listed(ring)} mimic one another in a circle."
         found.append(Defect("mimic-cycle", mimic, message, "One of them has to lead.", "joint"))

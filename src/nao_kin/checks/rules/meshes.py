@@ -136,9 +136,18 @@ def _content(path: Path) -> _Content:
     except OSError as error:
         return _Content(code="mesh-unreadable", reason=f"it cannot be opened ({error.strerror})")
     corners = [np.asarray(body.bounds) @ T[:3, :3].T + T[:3, 3] for body, T in bodies]
+    if not corners and _claims_triangles(path):
+        return _Content(code="mesh-unreadable", reason="it ends before the triangles that it announces")
     if not corners:
         return _Content(code="mesh-empty", reason="no triangles were found in it")
     largest = float(np.abs(corners).max())
     if not np.isfinite(largest):
         return _Content(code="mesh-unreadable", reason="it has coordinates that are not finite numbers")
     return _Content(largest)
+
+
+def _claims_triangles(path: Path) -> bool:
+    """Whether a file is a binary STL that announces triangles; the reader takes a truncated one for an empty one."""
+    with path.open("rb") as file:
+        head = file.read(84)
+    return path.suffix.lower() == ".stl" and len(head) == 84 and not head.startswith(b"solid") and any(head[80:])

@@ -78,14 +78,16 @@ def sample_postures(robot: Robot, count: int, seed: int = 0) -> list[dict[str, f
         {name: lower for name, (lower, _) in ranges.items()},
         {name: upper for name, (_, upper) in ranges.items()},
     ]
-    inside = [{name: float(rng.uniform(*ends)) for name, ends in ranges.items()} for _ in range(count)]
+    inside = [
+        {name: low + (high - low) * float(rng.random()) for name, (low, high) in ranges.items()} for _ in range(count)
+    ]
     return [*ends, *inside]
 
 
 def _tried(lower: float, upper: float) -> tuple[float, float]:
-    if lower > _WIDE or upper < -_WIDE:  # a range far from 0 is tried as far as a float allows
-        return max(lower, -1e300), min(upper, 1e300)
-    return max(lower, -_WIDE), min(upper, _WIDE)
+    """The part of a range that is tried: what is near 0 of a wide one, all of one that is far from 0."""
+    near = max(lower, -_WIDE), min(upper, _WIDE)
+    return near if near[0] <= near[1] else (lower, upper)
 
 
 def finite_poses(subject: Subject) -> Iterator[Defect]:

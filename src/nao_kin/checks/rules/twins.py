@@ -25,8 +25,8 @@ AXIS_NAMES = ("x", "y", "z")
 
 _POSITION = 5e-5  # [m] figures printed to a tenth of a millimetre are the same
 _DIRECTION = 2e-3  # [rad]
-_MAJORITY = 0.75  # of the twins are mirror images, or the robot is not meant to be symmetric
-_FEWEST = 3
+_MAJORITY = 0.66  # of the twins are mirror images, or the robot is not meant to be symmetric
+_FEWEST = 2
 _WORDS_IN_A_NAME = 3
 
 _SIDES = {

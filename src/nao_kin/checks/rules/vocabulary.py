@@ -167,6 +167,8 @@ def _meant(word: str, known: Iterable[str]) -> str:
 
 
 def _likeness(word: str, name: str) -> float:
+    if sorted(word) == sorted(name):
+        return 1.0  # letters in another order, as xzy
     return difflib.SequenceMatcher(None, word, name).ratio()
 
 
