@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
+from nao_kin.errors import UrdfError
 from nao_kin.urdf.document import document_of
 from nao_kin.urdf.fields import NumberError, decimal_numbers
+from nao_kin.urdf.resources import resolve_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -62,6 +64,26 @@ class Subject:
         from nao_kin.robot import Robot  # Pinocchio: only when there is a model to compute with
 
         return Robot.from_document(self.document, self.known)
+
+    def mesh_path(self, filename: str) -> Path:
+        """Where a mesh is that the file names.
+
+        Raises:
+            UrdfError: See `nao_kin.urdf.resolve_mesh`.
+        """
+        if filename not in self._mesh_paths:
+            try:
+                self._mesh_paths[filename] = resolve_mesh(filename, self.folder, self.packages)
+            except UrdfError as refusal:
+                self._mesh_paths[filename] = refusal
+        found = self._mesh_paths[filename]
+        if isinstance(found, UrdfError):
+            raise found
+        return found
+
+    @cached_property
+    def _mesh_paths(self) -> dict[str, Path | UrdfError]:
+        return {}
 
     def joint(self, name: str) -> etree._Element:
         """The element of a joint that is known to be there."""

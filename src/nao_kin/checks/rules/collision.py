@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["self_collisions"]
 
-_POSTURES = 60
+_POSTURES = (8, 40)
+_PAIRS = 8000  # over all postures: what one file may cost
 _OFTEN = 0.5
 _MOST_SOLIDS = 120  # the pairs grow with the square of their number
 
@@ -33,18 +34,17 @@ def self_collisions(subject: Subject) -> Iterator[Defect]:
     solids = _Solids.of(subject.robot)
     if solids is None:
         return
-    (
-        at_zero,
-        *_,
-    ) = postures = sample_postures(subject.robot, _POSTURES)
+    count = min(max(_PAIRS // len(solids.link_pairs), _POSTURES[0]), _POSTURES[1])
+    at_zero, _, _, *inside = sample_postures(subject.robot, count)
     overlapping = solids.overlapping(at_zero)
     for above, below in sorted(overlapping):
         message = f"The {describe(subject.link(below))} and the link {shown(above)} overlap with every joint at 0."
         at = children(subject.link(below), "collision")[0]
         yield Defect("self-collision", at, message, "Are the collision shapes too large, or an origin wrong?")
-    hits = sum(bool(solids.overlapping(posture) - overlapping) for posture in postures[-_POSTURES:])
-    if hits > _OFTEN * _POSTURES:
-        message = f"The robot runs into itself at {hits} of {_POSTURES} random postures within its limits."
+    solids.forget(overlapping)
+    hits = sum(map(solids.collides, inside))
+    if hits > _OFTEN * count:
+        message = f"The robot runs into itself at {hits} of {count} random postures within its limits."
         hint = "Planners will reject most of what they try; are the limits too wide or the shapes too large?"
         yield Defect("often-in-collision", subject.outline.root, message, hint, "name")
 
@@ -86,13 +86,27 @@ class _Solids:
 
     def overlapping(self, posture: Mapping[str, float]) -> set[tuple[str, str]]:
         """The pairs of links that overlap at a posture."""
+        data = pin.GeometryData(self.geometry)
+        self._collides(posture, data, stop_at_first=False)
+        hit = (result.isCollision() for result in data.collisionResults)
+        return {links for links, touches in zip(self.link_pairs, hit, strict=True) if touches}
+
+    def forget(self, links: set[tuple[str, str]]) -> None:
+        """Do not look at these pairs of links any more."""
+        for pair, names in reversed(list(zip(self.geometry.collisionPairs.tolist(), self.link_pairs, strict=True))):
+            if names in links:
+                self.geometry.removeCollisionPair(pair)
+                self.link_pairs.remove(names)
+
+    def collides(self, posture: Mapping[str, float]) -> bool:
+        """Whether any pair overlaps at a posture."""
+        return self._collides(posture, pin.GeometryData(self.geometry), stop_at_first=True)
+
+    def _collides(self, posture: Mapping[str, float], data: pin.GeometryData, *, stop_at_first: bool) -> bool:
         model, names = self.robot.model, self.robot.joint_names
         values = self.robot.expand(posture)
         q = PinocchioLayout.of(model, names).q(np.array([values[name] for name in names]))
-        data = pin.GeometryData(self.geometry)
-        pin.computeCollisions(model, model.createData(), self.geometry, data, q, False)
-        hit = (result.isCollision() for result in data.collisionResults)
-        return {links for links, touches in zip(self.link_pairs, hit, strict=True) if touches}
+        return bool(pin.computeCollisions(model, model.createData(), self.geometry, data, q, stop_at_first))
 
 
 def _coal_shape(coal: Any, shape: Shape) -> Any:

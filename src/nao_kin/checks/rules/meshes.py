@@ -11,7 +11,6 @@ import numpy as np
 from nao_kin.checks.subject import numbers
 from nao_kin.errors import UrdfError, near_matches
 from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_of
-from nao_kin.urdf.resources import resolve_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,7 +54,7 @@ def mesh_files(subject: Subject) -> Iterator[Defect]:
             hint = "Name it relative to the URDF, or as package://PACKAGE/path."
             yield Defect("mesh-absolute", mesh, message, hint, "filename")
         try:
-            resolve_mesh(filename, subject.folder, subject.packages)
+            subject.mesh_path(filename)
         except UrdfError as refusal:
             if refusal.code != "mesh-absolute":
                 yield Defect(refusal.code, mesh, refusal.reason, _remedy(refusal, filename, subject), "filename")
@@ -89,7 +88,7 @@ def mesh_contents(subject: Subject) -> Iterator[Defect]:
     opened = 0
     for mesh in subject.outline.meshes():
         try:
-            path = resolve_mesh(mesh.get("filename", ""), subject.folder, subject.packages)
+            path = subject.mesh_path(mesh.get("filename", ""))
         except UrdfError:
             continue  # reported as not found
         if path not in read:

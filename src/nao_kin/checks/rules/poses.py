@@ -78,10 +78,9 @@ def sample_postures(robot: Robot, count: int, seed: int = 0) -> list[dict[str, f
         {name: lower for name, (lower, _) in ranges.items()},
         {name: upper for name, (_, upper) in ranges.items()},
     ]
-    inside = [
+    return ends + [
         {name: low + (high - low) * float(rng.random()) for name, (low, high) in ranges.items()} for _ in range(count)
     ]
-    return [*ends, *inside]
 
 
 def _tried(lower: float, upper: float) -> tuple[float, float]:
