@@ -85,7 +85,7 @@ def _on_attribute(element: etree._Element, other: etree._Element, rng: np.random
     name = str(pick(names, rng)) if names else "name"
     match int(rng.integers(5)):
         case 0:
-            element.attrib.pop(name, None)
+            element.attrib.pop(name, "")
         case 1:
             _set(element, name, pick(WORDS, rng))
         case 2:
@@ -132,19 +132,13 @@ def _on_bytes(data: bytes, rng: np.random.Generator) -> bytes:
         case 3:
             return data[:start] + data[start:end] * 3 + data[end:]
         case 4:
-            return data.decode("utf-8", "replace").encode(
-                pick(("utf-16", "utf-32", "latin-1", "utf-8-sig"), rng), "replace"
-            )
+            return data.decode("utf-8", "replace").encode(pick(ENCODINGS, rng), "replace")
         case 5:
             return b'<!DOCTYPE robot [<!ENTITY a SYSTEM "/dev/zero"><!ENTITY b "&a;&a;">]>' + data
         case 6:
             return data.replace(b'"', b"'")
         case _:
-            return (
-                data[:start]
-                + pick((b"<!--", b"<![CDATA[", b"&amp;", b"<?x ?>", b"\0", b"]]>", b"<a>"), rng)
-                + data[start:]
-            )
+            return data[:start] + pick(MARKS, rng) + data[start:]
 
 
 def _set(element: etree._Element, name: str, value: str) -> None:
