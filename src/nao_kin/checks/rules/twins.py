@@ -50,7 +50,7 @@ _WORDS = "|".join(sorted(_OTHER, key=len, reverse=True))
 # A word between other signs, or a capital before a capitalised word, or a capitalised word among others.
 _SIDE = re.compile(
     rf"(?<![A-Za-z])(?:(?i:{_WORDS})(?![A-Za-z])|left(?=[A-Z])|right(?=[A-Z]))"
-    r"|(?<![A-Z])[LR](?=[A-Z][a-z])"
+    r"|(?<![A-Z])[LR](?=[A-Z][a-z])|(?<![A-Za-z])[LR](?=[A-Z]{2})"
     r"|(?<=[a-z0-9])(?:[FMRHB][LR]|[LR][FMRHB])(?![A-Za-z])"
     r"|(?<![A-Z])(?:Left|Right)(?![a-z])"
 )
