@@ -25,7 +25,7 @@ _LARGEST: Final = 64 * 1024 * 1024  # [bytes]
 def fingerprint(finding: Finding) -> str:
     """What stays of a finding when lines are moved about: its file, code and element, hashed."""
     text = "\0".join((finding.path.replace("\\", "/"), finding.code, finding.element))
-    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:32]
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
 def write_baseline(report: Report, path: str | os.PathLike[str]) -> None:

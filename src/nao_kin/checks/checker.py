@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.checks.catalogue import CATALOGUE
+from nao_kin.checks.catalogue import CATALOGUE, require_codes
 from nao_kin.checks.finding import Finding, Report
 from nao_kin.checks.rules import figures, inertia, joints, meshes, names, tree, vocabulary
 from nao_kin.checks.subject import Subject
@@ -26,13 +26,14 @@ if TYPE_CHECKING:
     from nao_kin.checks.subject import Rule
     from nao_kin.urdf.resources import MeshRoots
 
-__all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of", "require_codes"]
+__all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
 
 MOST_OF_A_CODE: Final = 100
 """Findings of one code that are listed for one file; nobody reads more, and a hostile file has millions."""
 
 TEXT_RULES: Final[tuple[Rule, ...]] = (
     vocabulary.version,
+    vocabulary.instructions,
     vocabulary.unknown_words,
     vocabulary.repeated_elements,
     names.duplicate_materials,
@@ -44,8 +45,10 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     joints.zero_ranges,
     joints.continuous_with_limits,
     joints.limits_in_other_units,
+    joints.mimics_of_fixed_joints,
     figures.other_readers_numbers,
     figures.stray_blanks,
+    figures.colours,
     figures.lengths_in_millimetres,
     figures.angles_in_degrees,
     inertia.incomplete_inertials,
@@ -151,17 +154,6 @@ def check_bytes(
 
 
 _SHOWN: Final = 4 * 1024 * 1024  # [bytes] of larger files no line is quoted
-
-
-def require_codes(codes: Iterable[str]) -> None:
-    """Make sure that every code is one of the catalogue.
-
-    Raises:
-        UnknownNameError: One is not; carries near matches.
-    """
-    for code in codes:
-        if code not in CATALOGUE:
-            raise UnknownNameError("code", code, CATALOGUE)
 
 
 def finding_of(subject: Subject, defect: Defect) -> Finding:

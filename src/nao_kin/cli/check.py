@@ -49,7 +49,7 @@ def check(
 ) -> None:
     """Check URDF files. Exit status 0: clean; 1: findings; 2: wrong usage or unreadable input."""
     from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
-    from nao_kin.checks.checker import require_codes
+    from nao_kin.checks.catalogue import require_codes
     from nao_kin.checks.finding import Report, Severity
     from nao_kin.errors import UrdfError
 

@@ -21,8 +21,7 @@ def explain(
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """Say what a code of nao-kin check means, why it matters, and how to fix it."""
-    from nao_kin.checks.catalogue import CATALOGUE
-    from nao_kin.checks.checker import require_codes
+    from nao_kin.checks.catalogue import CATALOGUE, require_codes
 
     if code is not None:
         require_codes([code])

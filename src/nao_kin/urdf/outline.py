@@ -32,6 +32,7 @@ class Defect:
         message: What is wrong, one sentence.
         hint: What to do about it; may be empty.
         attribute: The attribute of `at` where it shows; may be empty.
+        offset: The character of the text where it shows, where no element does; negative otherwise.
     """
 
     code: str
@@ -39,6 +40,7 @@ class Defect:
     message: str
     hint: str = ""
     attribute: str = ""
+    offset: int = -1
 
     @property
     def line(self) -> int:

@@ -59,6 +59,8 @@ class Positions:
 
     def place(self, defect: Defect) -> Place:
         """Where a defect shows: the value of its attribute if it has one there, else the element's tag."""
+        if defect.offset >= 0:
+            return self._place(defect.offset, defect.offset + 1)
         tag = self._tags.get(defect.at)
         if tag is None:
             return Place(line_of(defect.at))
@@ -71,6 +73,11 @@ class Positions:
         tag = self._tags.get(element)
         span = None if tag is None else self._attribute_span(tag, attribute)
         return None if span is None else self.text[span[0] : span[1]]
+
+    def instructions(self) -> list[int]:
+        """Where processing instructions begin that are not the XML declaration, in file order."""
+        starts = [found.start() for found in _START_TAG.finditer(self.text) if found[0].startswith("<?")]
+        return [start for start in starts if not re.match(r"<\?xml\s", self.text[start : start + 6])]
 
     def line_text(self, line: int) -> str:
         """The text of a line, "" beyond the end."""

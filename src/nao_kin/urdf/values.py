@@ -29,11 +29,12 @@ SHORTEST_AXIS = 1e-12
 """A joint axis shorter than this points nowhere."""
 
 
-_NEGATIVE = {"mass": "negative-mass", "limit": "negative-limit"}
+_NEGATIVE = {"mass": "negative-mass", "limit": "negative-limit", "dynamics": "negative-friction"}
 _NUMBER_HINTS = {
     "not-a-number": "Write a decimal number such as -0.5 or 1e-3; formulas and units are not evaluated.",
     "missing-number": "Add it.",
     "negative-limit": "Speeds and efforts are magnitudes; give them without a sign.",
+    "negative-friction": "Friction takes energy; remove the sign.",
     "negative-mass": "A mass is not negative; remove the sign.",
     "negative-size": "Sizes are not negative; turn the shape by its origin instead.",
     "out-of-range": "Lengths are metres and angles radians; is the exponent right?",

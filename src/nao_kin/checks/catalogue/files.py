@@ -92,6 +92,15 @@ FILES: Final = (
         "Remove the attribute, or write 1.0.",
     ),
     Entry(
+        "processing-instruction",
+        Severity.error,
+        "The file holds a processing instruction.",
+        "urdfdom, the reader of ROS and Pinocchio, knows only the XML declaration and refuses the file.",
+        "<?editor state?>",
+        '<?xml version="1.0"?>',
+        "Remove it, or make it a comment.",
+    ),
+    Entry(
         "too-many",
         Severity.error,
         "There are more links or joints than are read.",

@@ -101,6 +101,15 @@ JOINTS: Final = (
         "Remove the sign.",
     ),
     Entry(
+        "negative-friction",
+        Severity.error,
+        "A damping or friction is negative.",
+        "It would push instead of brake; Pinocchio refuses the file.",
+        '<dynamics damping="0.1" friction="-0.2"/>',
+        '<dynamics damping="0.1" friction="0.2"/>',
+        "Remove the sign.",
+    ),
+    Entry(
         "limit-in-degrees",
         Severity.warning,
         "The range of a revolute joint reaches beyond two turns.",

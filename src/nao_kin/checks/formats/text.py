@@ -33,8 +33,11 @@ def as_text(report: Report, *, colour: bool = False) -> str:
     """
     paint = _paint if colour else _plain
     blocks = ["\n".join(_block(finding, paint)) for finding in report.findings]
-    more = [f"There are more findings of {code} in {path} than are listed." for path, code in report.incomplete]
-    example = [f"What a code means: nao-kin explain {report.codes[0]}"] if report.codes else []
+    more = [
+        f"There are more findings of {code} in {_printable(path)} than are listed." for path, code in report.incomplete
+    ]
+    worst = min(report.findings, key=lambda finding: finding.severity.rank, default=None)
+    example = [f"What a code means: nao-kin explain {worst.code}"] if worst else []
     tail = [*more, *example, report.summary()]
     return "\n\n".join([*blocks, "\n".join(tail)])
 
@@ -46,7 +49,7 @@ def _block(finding: Finding, paint: Callable[[str, str], str]) -> Iterator[str]:
     for line in rest:
         yield paint("bold", line)
     gutter = " " * len(str(finding.line or ""))
-    yield f"{gutter}{paint('faint', '-->')} {finding.place}"
+    yield f"{gutter}{paint('faint', '-->')} {_printable(finding.place)}"
     if finding.line and finding.source.strip():
         source, column = _window(_printable(finding.source), finding.column, _WIDTH - len(gutter) - 3)
         bar = paint("faint", "|")

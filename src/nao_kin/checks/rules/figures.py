@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
 
-__all__ = ["angles_in_degrees", "lengths_in_millimetres", "other_readers_numbers", "stray_blanks"]
+__all__ = ["angles_in_degrees", "colours", "lengths_in_millimetres", "other_readers_numbers", "stray_blanks"]
 
 _OTHERS_READ: dict[str, tuple[Field, ...]] = {
-    "dynamics": (Field("damping"), Field("friction")),
+    "dynamics": (Field("damping", minimum=0.0), Field("friction", minimum=0.0)),
     "safety_controller": (
         Field("soft_lower_limit"),
         Field("soft_upper_limit"),
@@ -34,8 +34,10 @@ _OTHERS_READ: dict[str, tuple[Field, ...]] = {
 """Numbers of a joint that nothing here needs, but for which urdfdom (ROS, Pinocchio) refuses a file."""
 
 # A value that starts or ends with a blank, or holds a line break or a tab. Asked of the whole text before anything is
-# located, because hardly any file has one.
-_SUSPECT = re.compile("|".join(rf"=\s*{q}(?:\s[^{q}]*|[^{q}]*[\t\r\n][^{q}]*|[^{q}]*\s){q}" for q in ('"', "'")))
+# located, because hardly any file has one. A character reference may stand for a line break too.
+_SUSPECT = re.compile(
+    "|".join(rf"=\s*{q}(?:\s[^{q}]*|[^{q}]*[\t\r\n][^{q}]*|[^{q}]*\s){q}" for q in ('"', "'")) + "|&#"
+)
 
 _FULL_TURN = 2.0 * math.pi + 0.01  # [rad]
 _FAR = 10.0  # [m] no robot has neighbouring joints or a shape's centre that far away
@@ -67,11 +69,23 @@ def stray_blanks(subject: Subject) -> Iterator[Defect]:
             raw = subject.positions.raw_value(element, field.attribute) or ""
             if numbers(element, field.attribute, field.count) is None:
                 continue  # reported as no number
-            if re.search(r"[\t\r\n]|&#", raw) or (field.count == 1 and raw != raw.strip()):
+            if re.search(r"[\t\r\n]", raw + element.get(field.attribute, "")) or (
+                field.count == 1 and raw != raw.strip()
+            ):
                 what = "blanks around it" if field.count == 1 else "a line break or tab in it"
                 message = f"The {field.attribute} of the {describe(element)} has {what}."
                 hint = "ROS and Pinocchio refuse it: write numbers with single blanks between them and none around."
                 yield Defect("stray-blank", element, message, hint, field.attribute)
+
+
+def colours(subject: Subject) -> Iterator[Defect]:
+    """The parts of a colour lie between 0 and 1."""
+    for element in subject.outline.described():
+        rgba = numbers(element, "rgba", 4) if tag_of(element) == "color" else None
+        if rgba is not None and not 0.0 <= min(rgba) <= max(rgba) <= 1.0:
+            message = f"The rgba of the {describe(element)} is {shown(element.get('rgba', ''))}, not within 0 … 1."
+            hint = "Divide by 255." if max(rgba) > 1.0 else ""
+            yield Defect("colour-out-of-range", element, message, hint, "rgba")
 
 
 def lengths_in_millimetres(subject: Subject) -> Iterator[Defect]:

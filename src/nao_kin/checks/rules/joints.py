@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from nao_kin.checks.subject import numbers
-from nao_kin.urdf.outline import Defect, describe, first
+from nao_kin.urdf.outline import MOVING, Defect, describe, first
 from nao_kin.urdf.values import SHORTEST_AXIS
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ __all__ = [
     "continuous_with_limits",
     "incomplete_limits",
     "limits_in_other_units",
+    "mimics_of_fixed_joints",
     "zero_ranges",
 ]
 
@@ -99,6 +100,15 @@ def limits_in_other_units(subject: Subject) -> Iterator[Defect]:
         elif joint.get("type") == "prismatic" and _METRES < largest <= _UNLIMITED:
             message = f"The {name} limit of the {describe(joint)} is {largest:g} m in size."
             yield Defect("limit-in-millimetres", limit, message, "Is it in millimetres?", name)
+
+
+def mimics_of_fixed_joints(subject: Subject) -> Iterator[Defect]:
+    """A <mimic> names a joint even where it means nothing."""
+    for joint in subject.outline.joints:
+        mimic = first(joint, "mimic")
+        if mimic is not None and joint.get("type") not in MOVING and not mimic.get("joint"):
+            message = f"The <mimic> of the {describe(joint)} names no joint."
+            yield Defect("unknown-leader", mimic, message, "Remove it: the joint does not move.")
 
 
 def _end(limit: etree._Element, name: str) -> float | None:

@@ -36,8 +36,8 @@ def shapes(subject: Subject) -> Iterator[Defect]:
         for solid in (*children(link, "visual"), *children(link, "collision")):
             geometry = first(solid, "geometry")
             tags = [] if geometry is None else [tag_of(shape) for shape in geometry]
-            if not _SHAPES.intersection(tags):
-                what = f"only <{tags[0]}>, which URDF does not define" if tags and tags[0] else "no shape"
+            if not tags or tags[0] not in _SHAPES:  # other readers look at the first one only
+                what = f"as its shape a <{tags[0][:40]}>, which URDF does not define" if any(tags[:1]) else "no shape"
                 message = f"The {describe(solid)} has {what}."
                 hint = "Shapes: <box>, <cylinder>, <sphere>, <mesh>, inside <geometry>."
                 yield Defect("no-shape", solid if geometry is None else geometry, message, hint)

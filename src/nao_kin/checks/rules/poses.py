@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["coupled_limits", "coupled_ranges", "finite_poses", "readers_agree", "sample_postures"]
 
 _WIDE = math.pi  # [rad or m] joints without limits are tried up to here
-_AGREEMENT = 1e-9  # [1 and m, relative to the robot's size] two readers do the same arithmetic in another order
+_AGREEMENT = 1e-6  # [1 and m, relative to the robot's size] yourdfpy loses half of its digits near half a turn
 _ROUNDING = 1e-3  # [rad] documents print degrees to a tenth or a hundredth
 _POSTURES = 8
 

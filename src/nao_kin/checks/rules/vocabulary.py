@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
 
-__all__ = ["VERSIONS", "VOCABULARY", "repeated_elements", "unknown_words", "version"]
+__all__ = ["VERSIONS", "VOCABULARY", "instructions", "repeated_elements", "unknown_words", "version"]
 
 VERSIONS = ("1.0", "1.1", "1.2")
 """Versions of the format that urdfdom, the reader of ROS and Pinocchio, takes."""
@@ -92,6 +92,14 @@ def version(subject: Subject) -> Iterator[Defect]:
     if given is not None and given.strip() not in VERSIONS:
         message = f"The version {shown(given)} of the format is none that readers know."
         yield Defect("urdf-version", root, message, f"Versions: {', '.join(VERSIONS)}; without one, 1.0.", "version")
+
+
+def instructions(subject: Subject) -> Iterator[Defect]:
+    """The file holds no processing instruction but the XML declaration."""
+    if subject.positions.text.count("<?") > 1 or not subject.positions.text.startswith("<?xml"):
+        for offset in subject.positions.instructions():
+            message = "The file holds a processing instruction, for which ROS and Pinocchio refuse it."
+            yield Defect("processing-instruction", subject.outline.root, message, "Remove <?…?>.", offset=offset)
 
 
 def unknown_words(subject: Subject) -> Iterator[Defect]:
