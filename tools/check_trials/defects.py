@@ -278,7 +278,12 @@ def link_kinds() -> Iterator[Kind]:
     yield Kind("mesh-absolute", "link/visual/geometry/mesh", put(filename="file:///home/someone/part.stl"))
     yield Kind("mesh-unit", "link/collision/geometry/mesh", put(scale="1000 1000 1000"))
     yield Kind("duplicate-link", "link", copied)
-    yield Kind("undefined-material", "link/visual/material", typo("name"))
+    yield Kind("undefined-material", "link/visual/material", lambda tag, tags: _lost_material(tag, tags))
+
+
+def _lost_material(tag: Tag, tags: list[Tag]) -> Seeded | str | None:
+    """A material that is only named here, by a name that is none."""
+    return typo("name")(tag, tags) if tag.tag.endswith("/>") else None
 
 
 def _lost_mesh(tag: Tag) -> str | None:

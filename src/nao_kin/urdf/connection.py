@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import heapq
+from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import near_matches
@@ -23,6 +26,7 @@ __all__ = [
     "two_parents",
 ]
 
+_CLOSELY = 20
 _COMPARED = 64  # longer names are not compared: the time that takes grows with the square of their length
 
 
@@ -155,5 +159,15 @@ def _listed(names: list[str]) -> str:
 def _near_hint(name: str, known: Iterable[str]) -> str:
     if len(name) > _COMPARED:
         return ""
-    near = near_matches(name, (candidate for candidate in known if len(candidate) <= _COMPARED))
+    # The names with most pairs of letters in common first: to compare with all takes seconds in a hostile file.
+    pairs, short = _pairs(name), (candidate for candidate in known if len(candidate) <= _COMPARED)
+    likely = heapq.nlargest(_CLOSELY, short, key=lambda candidate: len(pairs & _pairs(candidate)))
+    near = near_matches(name, likely)
     return f"Did you mean {' or '.join(map(repr, near))}?" if near else ""
+
+
+@lru_cache(maxsize=4096)
+def _pairs(name: str) -> frozenset[str]:
+    """The pairs of neighbouring letters of a name."""
+    folded = name.casefold()
+    return frozenset(map("".join, pairwise(folded)))

@@ -33,9 +33,7 @@ def as_text(report: Report, *, colour: bool = False) -> str:
     """
     paint = _paint if colour else _plain
     blocks = ["\n".join(_block(finding, paint)) for finding in report.findings]
-    more = [
-        f"There are more findings of {code} in {_printable(path)} than are listed." for path, code in report.incomplete
-    ]
+    more = [f"More findings of {code} in {_printable(path)} than are listed." for path, code in report.incomplete]
     worst = min(report.findings, key=lambda finding: finding.severity.rank, default=None)
     example = [f"What a code means: nao-kin explain {worst.code}"] if worst else []
     tail = [*more, *example, report.summary()]
