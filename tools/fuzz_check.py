@@ -3,8 +3,9 @@
 python tools/fuzz_check.py                        20 000 mutants; exit status 1 if one breaks a promise
 python tools/fuzz_check.py --mutants 500 --seed 1
 
-The promises: every mutant gets a verdict, none takes more than five seconds of processor time, none crashes the process; and where no
-error is reported, Pinocchio loads the very bytes, every pose is finite, and yourdfpy agrees on a seeded few hundred.
+The promises: every mutant gets a verdict, none takes more than five seconds of processor time, none crashes the
+process; and where no error is reported, Pinocchio loads the very bytes, every pose is finite, and yourdfpy agrees on a
+seeded few hundred.
 """
 
 from __future__ import annotations

@@ -84,10 +84,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--defects", type=int, default=300)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--robots", type=int, help="use so many of the files only")
     arguments = parser.parse_args()
     rng, outcome = np.random.default_rng(arguments.seed), Outcome()
     # A file that is refused as it is has no place for a single defect.
-    files = [path for path in sources() if not clean(path).errors]
+    chosen = sources()
+    if arguments.robots is not None:
+        chosen = [chosen[i] for i in sorted(rng.choice(len(chosen), arguments.robots, replace=False))]
+    files = [path for path in chosen if not clean(path).errors]
     unplaced: Counter[str] = Counter()
     turn = 0
     while sum(outcome.seeded.values()) < arguments.defects and turn < 4 * arguments.defects:
