@@ -159,6 +159,29 @@ def test_another_model_that_departs_is_a_finding_at_each_joint(run: Run, tmp_pat
     assert "1 mm" in finding["message"]
 
 
+def test_ends_that_sit_elsewhere_are_a_finding_at_the_joint_above(run: Run, tmp_path: Path) -> None:
+    other = tmp_path / "other.urdf"
+    text = JACO.read_text()
+    above = text[text.index('<child link="end_effector"/>') :]
+    origin = above[above.index("<origin") : above.index("/>", above.index("<origin"))]
+    other.write_text(text.replace(origin, '<origin xyz="0 0 -0.2" rpy="0 0 0"'))
+    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    assert "only the ends differ" in finding["message"]
+    assert '<child link="end_effector"/>' in "".join(text.split("\n")[finding["line"] - 1 : finding["line"] + 2])
+
+
+def test_a_frame_or_a_joint_that_the_other_model_lacks_is_a_finding(run: Run, tmp_path: Path) -> None:
+    other = tmp_path / "other.urdf"
+    other.write_text(JACO.read_text().replace('"end_effector"', '"tool"'))
+    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    assert "'end_effector' is not in" in finding["message"]
+    other.write_text(JACO.read_text().replace('"link_base"', '"base"'))
+    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    assert "nothing can be compared" in finding["message"]
+    done = run("check", BAD, "--against", JACO)
+    assert "was not compared" in done.stderr
+
+
 def test_a_departure_without_a_joint_stands_at_the_root() -> None:
     finding = departure_finding(CLEAN, "departs-from-model", None, "They differ.")
     assert (finding.line, finding.column) == (1, 14)

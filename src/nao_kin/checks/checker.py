@@ -31,6 +31,8 @@ __all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
 MOST_OF_A_CODE: Final = 100
 """Findings of one code that are listed for one file; nobody reads more, and a hostile file has millions."""
 
+_QUOTED: Final = 4 * 1024 * 1024  # [bytes] of larger files that are no XML no line is quoted
+
 TEXT_RULES: Final[tuple[Rule, ...]] = (
     vocabulary.version,
     vocabulary.instructions,
@@ -153,9 +155,6 @@ def check_bytes(
     return listing.report()
 
 
-_SHOWN: Final = 4 * 1024 * 1024  # [bytes] of larger files no line is quoted
-
-
 def finding_of(subject: Subject, defect: Defect) -> Finding:
     """A defect with its place in the text and the severity that the catalogue gives it."""
     place = subject.positions.place(defect)
@@ -248,14 +247,12 @@ class _Listing:
 
     def report_refusal(self, refusal: UrdfError, data: bytes) -> Report:
         """The report on a file that never became a tree."""
-        lines = data.decode("utf-8", "replace").split("\n") if refusal.line and len(data) < _SHOWN else []
+        lines = data.decode("utf-8", "replace").split("\n") if refusal.line and len(data) < _QUOTED else []
         source = lines[refusal.line - 1].rstrip("\r") if refusal.line and refusal.line <= len(lines) else ""
-        if self._wanted(refusal.code):
-            severity = CATALOGUE[refusal.code].severity
+        code, severity = refusal.code, CATALOGUE[refusal.code].severity
+        if self._wanted(code):
             self.findings.append(
-                Finding(
-                    self.path, refusal.line, 0, 0, refusal.code, severity, "file", refusal.reason, refusal.hint, source
-                )
+                Finding(self.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
             )
         return self.report()
 

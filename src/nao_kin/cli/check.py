@@ -104,7 +104,9 @@ def _checked(path: str, options: _Options, table: str | None, other: str | None)
         data = sys.stdin.buffer.read(LIMITS.file_bytes + 1)
         return check_bytes(data, "<stdin>", **options)
     found = check_file(path, **options)
-    if (table or other) and not found.errors:
+    if (table or other) and found.errors:
+        typer.echo(f"nao-kin: {path} was not compared, because of its errors.", err=True)
+    elif table or other:
         from nao_kin.cli.departures import departures_from_model, departures_from_table
 
         departures = [

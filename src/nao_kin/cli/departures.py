@@ -31,8 +31,10 @@ def departures_from_table(path: str, table: str) -> Iterator[Finding]:
     from nao_kin.robot import load
 
     chain = DHChain.from_file(table)
-    model = load(path).chain(chain.base_name, chain.tip_name)
-    yield from _finding(path, "departs-from-table", compare(chain, model))
+    robot = load(path)
+    found = compare(chain, robot.chain(chain.base_name, chain.tip_name))
+    hint = "Look at that joint's origin and axis, and at its row in the table."
+    yield from _finding(path, "departs-from-table", found, _joint_above(robot, chain.tip_name), hint)
 
 
 def departures_from_model(path: str, other: str) -> Iterator[Finding]:
@@ -41,7 +43,6 @@ def departures_from_model(path: str, other: str) -> Iterator[Finding]:
     Raises:
         UrdfError: One of the files cannot be read.
     """
-    from nao_kin.crosscheck import compare
     from nao_kin.robot import load
 
     ours, theirs = load(path), load(other)
@@ -52,36 +53,58 @@ def departures_from_model(path: str, other: str) -> Iterator[Finding]:
         return
     seen: set[str] = set()
     for tip in _ends(ours):
-        if tip not in frames:
-            message = f"The frame {tip!r} is not in {other}."
-            above = next(joint.name for joint in ours.document.joints if joint.child == tip)
-            yield departure_finding(path, "departs-from-model", above, message)
-            continue
-        chain, twin = ours.chain(ours.root, tip), theirs.chain(ours.root, tip)
-        if chain.path_joint_names != twin.path_joint_names:
-            message = f"The way to {tip!r} has other joints than in {other}: {_listed(twin.path_joint_names)}."
-            differs = zip(chain.path_joint_names, twin.path_joint_names, strict=False)
-            name = next((a for a, b in differs if a != b), chain.path_joint_names[-1])
-            yield departure_finding(path, "departs-from-model", name, message)
-            continue
-        for finding in _finding(path, "departs-from-model", compare(twin, chain, samples=_SAMPLES)):
+        for finding in _end_findings(path, ours, theirs, tip, other):
             if finding.element not in seen:  # ends that share joints depart at the same one
                 seen.add(finding.element)
                 yield finding
 
 
-def _finding(path: str, code: str, found: Comparison) -> Iterator[Finding]:
-    """The one place where a comparison becomes a finding; what explains it goes into the hint."""
-    if found.agrees:
+def _end_findings(path: str, ours: Robot, theirs: Robot, tip: str, other: str) -> Iterator[Finding]:
+    from nao_kin.crosscheck import compare
+
+    above, code = _joint_above(ours, tip), "departs-from-model"
+    if tip not in theirs.frame_names:
+        yield departure_finding(path, code, above, f"The frame {tip!r} is not in {other}.")
         return
+    names, others = (_moving_on_the_way(robot, ours.root, tip) for robot in (ours, theirs))
+    if names != others:
+        message = f"The way to {tip!r} has other joints than in {other}: {_listed(others)}."
+        name = next((a for a, b in zip(names, others, strict=False) if a != b), names[-1])
+        yield departure_finding(path, code, name, message)
+        return
+    found = compare(theirs.chain(ours.root, tip), ours.chain(ours.root, tip), samples=_SAMPLES)
+    yield from _finding(path, code, found, above, "Look at that joint's origin and axis in both files.")
+
+
+def _finding(path: str, code: str, found: Comparison, above: str | None, hint: str) -> Iterator[Finding]:
+    """The one place where a comparison becomes a finding; what explains it goes into the hint.
+
+    Args:
+        path: The file that is checked.
+        code: Of the finding.
+        found: The comparison, the file's chain second.
+        above: The joint that the tip hangs on, where the finding stands if only the ends differ.
+        hint: What to look at.
+    """
     departure = found.first_departure
+    if departure is None:
+        return
     worst = f"{found.max_position_error * 1e3:.4g} mm and {found.max_rotation_error:.4g} rad at worst"
-    where = "its joints move alike, only the ends differ"
-    if departure is not None and departure.joint is not None:
+    where = "the joints move alike, only the ends differ"
+    if departure.joint is not None:
         where = f"they part at the joint {departure.joint!r}, or at the fixed transform that leads to it"
     message = f"{found.b.name} and {found.a.name} are apart by {worst}: {where}."
-    hint = "Look at that joint's origin and axis, and at its row in the table."
-    yield departure_finding(path, code, None if departure is None else departure.joint, message, hint)
+    yield departure_finding(path, code, departure.joint or above, message, hint)
+
+
+def _joint_above(robot: Robot, link: str) -> str | None:
+    return next((joint.name for joint in robot.document.joints if joint.child == link), None)
+
+
+def _moving_on_the_way(robot: Robot, base: str, tip: str) -> tuple[str, ...]:
+    """Names of the joints from base to tip that move, whichever way they are met."""
+    up, down = robot.path(base, tip)
+    return tuple(joint.name for joint in (*up, *down) if joint.kind != "fixed")
 
 
 def _ends(robot: Robot) -> list[str]:

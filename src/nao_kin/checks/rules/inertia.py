@@ -41,15 +41,9 @@ class Body:
 
     link: etree._Element
     inertial: etree._Element
+    inertia: etree._Element
     mass: float
     matrix: Floats
-
-    @property
-    def inertia(self) -> etree._Element:
-        """The inertia element."""
-        element = first(self.inertial, "inertia")
-        assert element is not None  # noqa: S101 - bodies are made of inertials that have one
-        return element
 
     @cached_property
     def moments(self) -> tuple[float, float, float]:
@@ -161,11 +155,11 @@ def _bodies(subject: Subject) -> Iterator[Body]:
         mass = None if inertial is None else numbers(first(inertial, "mass"), "value")
         inertia = None if inertial is None else first(inertial, "inertia")
         values = [numbers(inertia, component) for component in _COMPONENTS]
-        if inertial is not None and mass is not None and None not in values:
+        if inertial is not None and inertia is not None and mass is not None and None not in values:
             xx, xy, xz, yy, yz, zz = (value[0] for value in values if value)
             matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
             if np.abs(matrix).max() < 1e100:  # beyond it the eigenvalues overflow; no body of this world reaches it
-                yield Body(link, inertial, mass[0], matrix)
+                yield Body(link, inertial, inertia, mass[0], matrix)
 
 
 def _mass(link: etree._Element) -> float:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +17,6 @@ from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_o
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from lxml import etree
 
@@ -26,6 +28,7 @@ _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _ABSOLUTE = re.compile(r"file:|/|[A-Za-z]:[\\/]", re.IGNORECASE)
 _LARGEST = 20.0  # [m] of a link; a mesh in millimetres is a hundred times larger
 _SMALLEST = 1e-4  # [m]
+_LISTED = 500  # files of a folder that a hint is looked for among
 _BYTES = 64 * 1024 * 1024
 """How much mesh is opened for one file unless more is asked for, which bounds the time that takes."""
 
@@ -56,8 +59,7 @@ def mesh_files(subject: Subject) -> Iterator[Defect]:
         try:
             subject.mesh_path(filename)
         except UrdfError as refusal:
-            if refusal.code != "mesh-absolute":
-                yield Defect(refusal.code, mesh, refusal.reason, _remedy(refusal, filename, subject), "filename")
+            yield Defect(refusal.code, mesh, refusal.reason, _remedy(refusal, filename, subject), "filename")
 
 
 def _remedy(refusal: UrdfError, filename: str, subject: Subject) -> str:
@@ -72,12 +74,15 @@ def _remedy(refusal: UrdfError, filename: str, subject: Subject) -> str:
 
 
 def _beside(filename: str, subject: Subject) -> list[str]:
-    """Names of the files in the folder where a relative mesh should be."""
-    if subject.folder is None or "://" in filename or _ABSOLUTE.match(filename) or ".." in filename:
+    """Names of some files in the folder where a relative mesh should be, if that is below the document's."""
+    if subject.folder is None or "://" in filename or _ABSOLUTE.match(filename) or "\0" in filename:
         return []
-    folder = subject.folder / filename.rpartition("/")[0]
+    home = Path(os.path.realpath(subject.folder))
+    folder = Path(os.path.realpath(home / filename.rpartition("/")[0]))
+    if not folder.is_relative_to(home):
+        return []
     try:
-        return sorted(path.name for path in folder.iterdir())[:500]
+        return sorted(path.name for path in islice(folder.iterdir(), _LISTED))
     except OSError:
         return []
 
@@ -89,10 +94,11 @@ def mesh_contents(subject: Subject) -> Iterator[Defect]:
     for mesh in subject.outline.meshes():
         try:
             path = subject.mesh_path(mesh.get("filename", ""))
-        except UrdfError:
-            continue  # reported as not found
+            size = path.stat().st_size
+        except (UrdfError, OSError):
+            continue  # reported as not found, or gone since
         if path not in read:
-            opened += path.stat().st_size
+            opened += size
             if opened > _BYTES and not subject.thorough:
                 message = f"From here on meshes were not opened: they have more than {_BYTES // 1024**2} MB together."
                 yield Defect("meshes-not-opened", mesh, message, "Open them all with --thorough.", "filename")

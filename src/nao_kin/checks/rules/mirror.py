@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
+    from nao_kin.arrays import Floats
     from nao_kin.checks.subject import Subject
     from nao_kin.urdf.elements import Inertial, UrdfJoint
 
@@ -23,6 +24,7 @@ __all__ = ["geometry_of_twins", "inertia_of_twins", "limits_of_twins"]
 _LIMIT = 1e-4  # [rad or m]
 _RELATIVE = 1e-4  # of a speed, an effort, a mass
 _MOMENT = 1e-2  # of the largest principal moment
+_EITHER = "One of the two is wrong, or the robot is not symmetric here."
 
 
 def geometry_of_twins(subject: Subject) -> Iterator[Defect]:
@@ -46,9 +48,6 @@ def geometry_of_twins(subject: Subject) -> Iterator[Defect]:
                 f"{_text(a, 'axis', 'xyz')}: not mirror images along {AXIS_NAMES[plane]}."
             )
             yield Defect("mirror-axis", b if axis is None else axis, message, _EITHER, "xyz")
-
-
-_EITHER = "One of the two is wrong, or the robot is not symmetric here."
 
 
 def _origin_defect(a: etree._Element, b: etree._Element, attribute: str, plane: int) -> Defect:
@@ -141,9 +140,10 @@ def _moment_defects(inertial: etree._Element, ours: etree._Element, a: Inertial,
         yield Defect(code, inertial if inertia is None else inertia, message, _EITHER)
 
 
-def _principal(body: Inertial) -> np.typing.NDArray[np.float64]:
+def _principal(body: Inertial) -> Floats:
     xx, xy, xz, yy, yz, zz = body.inertia
-    return np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    moments: Floats = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    return moments
 
 
 def _swapped(a: float, b: float) -> bool:
