@@ -61,10 +61,10 @@ def test_values_are_given_as_they_stand_in_the_text() -> None:
     assert where.raw_value(elements[0], "version") is None
 
 
-def test_processing_instructions_are_found_but_for_the_declaration() -> None:
-    text = '<?xml version="1.0"?><?a?><robot name="r"><!-- <?b?> --><?c?></robot>'
+def test_processing_instructions_are_found_but_for_those_at_the_top() -> None:
+    text = '<?xml version="1.0"?><?a?><robot name="r"><!-- <?b?> --><?c?></robot><?d?>'
     where, _ = positions(text)
-    assert where.instructions() == [text.index("<?a"), text.index("<?c")]
+    assert where.instructions() == [text.index("<?c"), text.index("<?d")]
 
 
 def test_a_refusal_names_the_line_of_the_attribute() -> None:

@@ -75,9 +75,14 @@ class Positions:
         return None if span is None else self.text[span[0] : span[1]]
 
     def instructions(self) -> list[int]:
-        """Where processing instructions begin that are not the XML declaration, in file order."""
-        starts = [found.start() for found in _START_TAG.finditer(self.text) if found[0].startswith("<?")]
-        return [start for start in starts if not re.match(r"<\?xml\s", self.text[start : start + 6])]
+        """Where processing instructions begin that do not open the file, as the XML declaration does, in file order."""
+        starts, opening = [], True
+        for token in _START_TAG.finditer(self.text):
+            instruction = token[0].startswith("<?")
+            opening = opening and instruction
+            if instruction and not opening:
+                starts.append(token.start())
+        return starts
 
     def line_text(self, line: int) -> str:
         """The text of a line, "" beyond the end."""

@@ -94,8 +94,8 @@ FILES: Final = (
     Entry(
         "processing-instruction",
         Severity.error,
-        "The file holds a processing instruction.",
-        "urdfdom, the reader of ROS and Pinocchio, knows only the XML declaration and refuses the file.",
+        "A processing instruction stands after a comment or inside the robot.",
+        "urdfdom, the reader of ROS and Pinocchio, takes them at the very top only and refuses the file.",
         "<?editor state?>",
         '<?xml version="1.0"?>',
         "Remove it, or make it a comment.",

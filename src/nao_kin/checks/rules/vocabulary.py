@@ -95,8 +95,9 @@ def version(subject: Subject) -> Iterator[Defect]:
 
 
 def instructions(subject: Subject) -> Iterator[Defect]:
-    """The file holds no processing instruction but the XML declaration."""
-    if subject.positions.text.count("<?") > 1 or not subject.positions.text.startswith("<?xml"):
+    """No processing instruction follows what opens the file."""
+    text = subject.positions.text
+    if text.count("<?") > text.startswith("<?"):
         for offset in subject.positions.instructions():
             message = "The file holds a processing instruction, for which ROS and Pinocchio refuse it."
             yield Defect("processing-instruction", subject.outline.root, message, "Remove <?…?>.", offset=offset)
