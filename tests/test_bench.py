@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -23,8 +23,15 @@ from nao_kin.cli.bench.referee import NEAR, Referee
 from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
 from nao_kin.cli.output import OutputFormat
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 IK = ("ik", "--targets", "20", "--batch", "40", "--runs", "1")
+TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
+METHODS = ("methods", "--targets", "12")
+PRACTICUM = ("practicum", "--targets", "10")
+CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -74,7 +81,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -98,6 +105,59 @@ def test_ik_solves_everything_alone_in_batches_and_on_many_robots() -> None:
     assert all(row["success"] == 100.0 and row["same_bits"] and row["ratio"] is None for row in data["batch"])
     assert len(data["robots"]) == len(many_chains()[0])
     assert missed(data) == []
+
+
+def test_tips_serves_both_hands_and_believes_no_reach_that_the_model_does_not_confirm() -> None:
+    data = data_of(*TIPS)
+    assert missed(data) == []
+    assert all(row["false"] == 0 for row in data["reachable"] + data["unreachable"])
+    up, forward = data["reach"]
+    # Standing, the shoulder is 85 + 100 + 102.9 + 45.11 + 100 mm above the sole; upper arm and forearm with their
+    # offsets, hypot(105, 15) and hypot(55.95 + 57.75, 12.31), are 220.5 mm long.
+    assert 0.64 < up["still"] < 0.4331 + 0.2205 < up["moving"]
+    assert 0.21 < forward["still"] < 0.2205 < forward["moving"]
+    assert all(row["both"] <= row["moving"] + 1e-3 for row in (up, forward))
+
+
+def test_methods_reach_near_targets_and_none_lies() -> None:
+    data = data_of(*METHODS)
+    # So few targets make percentages coarse; that nobody claims what is not so holds for any number.
+    assert missed(data, "near targets", "NAO arm") == []
+    assert {row["method"] for row in data["easy"]} == set(nk.METHODS)
+    able = {row["method"] for row in data["two_hands"]}
+    assert able == {name for name, method in nk.METHODS.items() if method.several_tips}
+    verdicts = [note for note in data["notes"] if note.startswith(("Thesis", "Practicum"))]
+    assert len(verdicts) >= 14
+    assert all("confirmed" in verdict or "refuted" in verdict for verdict in verdicts)
+
+
+def test_convergence_plots_are_pictures(tmp_path: Path) -> None:
+    from nao_kin.cli.bench.convergence import draw
+    from nao_kin.cli.bench.method_sets import easy
+
+    near = easy(nk.load("nao_v33_h21").chain("left_arm"), "position", 5, np.random.default_rng(0))
+    (written,) = draw([near], tmp_path)
+    assert written.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_practicums_tasks_report_every_fault() -> None:
+    data = data_of(*PRACTICUM)
+    assert missed(data, "pseudo-inverse") == []
+    assert {row["count"] for row in data["task_1ef_near"]} >= {128, 64, 1}
+    assert sum(note.startswith(("1f,", "1g,")) for note in data["notes"]) == 4
+
+
+def test_closed_recovers_everything_and_prices_the_folded_arm() -> None:
+    data = data_of(*CLOSED)
+    forms = {row["form"] for row in data["closed"]}
+    assert {"nao_head", "nao_arm_h21", "nao_arm_h25"} <= forms
+    assert all(row["recovered"] == row["regular"] and row["missing"] == 0 for row in data["closed"])
+    assert all(row["wrong"] == row["nan"] == 0 for row in data["strata"])
+    same, solved = data["folded"]
+    # By the offsets alone: the elbow's 15 mm turns with the upper arm, the hand's 12.31 mm with the hand.
+    assert 5.0 < same["median"] < same["most"] <= 2.0 * 15.0 + 12.31
+    assert solved["median"] > 5.0
+    assert missed(data, "CFJ") == []
 
 
 def test_a_peer_that_lies_has_no_success(fakes: None) -> None:
@@ -197,6 +257,13 @@ def test_without_the_extra_the_jaco2_is_measured(monkeypatch: pytest.MonkeyPatch
     chains, missing = many_chains()
     assert {chain.robot.name for chain, _ in chains} == {"jaco2", "nao_v50_h25", "phantomx"}
     assert len(missing) == 3
+
+
+def test_planted_errors_are_explained() -> None:
+    data = data_of("explain", "--singles", "10", "--doubles", "3", "--seed", "1")
+    assert missed(data, "slowest") == []
+    assert sum(row["tables"] for row in data["one_error"]) == 10
+    assert sum(row["tables"] for row in data["two_errors"]) == 6
 
 
 def test_times_are_taken_in_turns() -> None:

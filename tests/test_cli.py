@@ -98,6 +98,22 @@ def test_ik_reaches_and_says_where_it_does_not(tmp_path: Path) -> None:
     assert "is reached" in ok("ik", "jaco2", "--xyz", *pose.translation, "--rpy", *degrees, "--deg")
 
 
+def test_ik_all_lists_every_branch() -> None:
+    posture = ("--posture", "LShoulderRoll=17", "--posture", "LElbowRoll=-30", "--deg")
+    text = ok("ik", "nao", "--chain", "left_arm", *posture, "--all")
+    assert "4 solutions" in text
+    assert "#1 SOLVED: shoulder upright, elbow bent to −." in text
+    assert max(map(len, text.splitlines())) <= 80
+    locked = ("--lock", "LElbowYaw=-1", "--lock", "LWristYaw=0.2")
+    where = ("ik", "nao", "--chain", "left_arm", "--all", "--format", "json")
+    data = json.loads(ok(*where, "--xyz", 0.15, 0.15, 0.1, *locked))
+    assert [s["status"] for s in data["solutions"]] == ["SOLVED", *["OUTSIDE_LIMITS"] * 3]
+    assert {s["q"]["LElbowYaw"] for s in data["solutions"]} == {-1.0}
+    far = json.loads(ok(*where, "--xyz", 5, 0, 0, *locked, status=1))
+    assert far["solutions"] == []
+    assert "misses by" in far["reason"]
+
+
 def test_compare_exits_with_its_verdict(tmp_path: Path) -> None:
     assert "yes" in ok("compare", "kofinas_left_leg")
     text = ok("compare", "thesis_left_arm", "--read-as", "modified", status=1)
@@ -108,6 +124,46 @@ def test_compare_exits_with_its_verdict(tmp_path: Path) -> None:
     table.write_text(nk.document_chain("kofinas_left_arm").to_toml())
     assert "yes" in ok("compare", table, "nao:left_arm")
     assert "yes" in ok("compare", "nao:left_arm", "nao_v60_h25:left_arm")
+
+
+def test_compare_explains(tmp_path: Path) -> None:
+    written = tmp_path / "corrected.toml"
+    text = " ".join(ok("compare", "matlab_left_hand", "--explain", "--corrected", written, status=1).split())
+    assert "Agrees to" in text
+    assert "tool z 0 mm → -12.31 mm (dropped) (12.31 mm)" in text
+    assert "yes" in ok("compare", written, "nao_v33_h21:left_arm")
+    data = json.loads(ok("compare", "matlab_left_hand", "--explain", "--format", "json", status=1))
+    explanation = data["explanation"]
+    assert [step["kind"] for step in explanation["steps"]] == ["dropped offset", "folded offset"]
+    assert all(one["position_error"] < 1e-12 for one in explanation["alternatives"])
+    assert data["corrected"] == written.read_text() == explanation["alternatives"][0]["table"]
+    assert data["gauge"] is None
+    assert data["first_pair"]["joints"] == ["LShoulderRoll", "LElbowYaw"]
+    assert len(data["overlay"]["a"]) == len(data["overlay"]["b"]) == len(data["overlay"]["joints"]) + 1
+    assert "first_pair" in json.loads(ok("compare", "practicum_jaco2", "--format", "json", status=1))
+    assert "exactly" in ok("compare", "kofinas_head", "--explain")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("alpha =", "alpa ="), "bad.toml:7: unknown key 'alpa'"),
+        (("d = 0.105", 'd = "long"'), "bad.toml:20: d"),
+        (("d = 0.105", ""), "bad.toml:17: [[joint]] 3: d missing"),
+        (("d = 0.105", "d = nan"), "bad.toml:20: d"),
+        (('lengths = "m"', 'lengths = "feet"'), "bad.toml:3: lengths: expected m or mm"),
+        (("[[joint]]", "[[joint]]\na = 0\nalpha = 0\nd = 0\ntheta = 0\n[[joint]]"), "expected 4 rows (LShoulderPitch"),
+    ],
+)
+def test_bad_tables_are_refused_with_the_line_and_what_was_expected(tmp_path: Path, change, said: str) -> None:
+    rows = "\n".join(f"[[joint]]\na = 0\nalpha = 0\nd = {d}\ntheta = 0\n" for d in (0, 0, 0.105, 0))
+    text = f'name = "mine"\nconvention = "modified"\nlengths = "m"\n\n{rows}'
+    assert change[0] in text
+    (tmp_path / "bad.toml").write_text(text.replace(*change, 1))
+    done = run("compare", "bad.toml", "nao_v50_h21:left_arm", "--explain", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert said in done.stderr
 
 
 def test_robots_lists_what_loads() -> None:
@@ -168,6 +224,11 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
         (("ik", "nao", "--posture", "LElbowRoll"), "NAME=NUMBER"),
         (("ik", "nao", "--posture", "LElbowRol=1"), "Did you mean 'LElbowRoll'"),
         (("ik", "nao", "--xyz", 0, 0, 0, "--method", "ml"), "There is no method 'ml'"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all"), "position with LElbowYaw and LWristYaw locked"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--lock", "LElbow=1"), "Did you mean"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--lock", "LElbowYaw=1"), "--lock goes with --all"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--html", "x.html"), "leave out --all"),
+        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--method", "dls"), "leave out --all"),
         (("compare", "thesis_left_arm", "nao:left_arm"), "5 joints as"),
         (("compare", "nao:left_arm"), "say what to hold"),
         (("compare", "nao:left_arm", "nao:left_arm", "--read-as", "standard"), "--read-as is for tables"),

@@ -10,6 +10,11 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from nao_kin.analytic.batch import BatchSolutions as BatchSolutions
+    from nao_kin.analytic.batch import solve_all_batch as solve_all_batch
+    from nao_kin.analytic.solutions import Solutions as Solutions
+    from nao_kin.analytic.solutions import nearest as nearest
+    from nao_kin.analytic.solutions import solve_all as solve_all
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
@@ -19,6 +24,7 @@ if TYPE_CHECKING:
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
+    from nao_kin.dh_from_chain import to_dh as to_dh
     from nao_kin.dh_row import DHRow as DHRow
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
@@ -28,16 +34,19 @@ if TYPE_CHECKING:
     from nao_kin.ik.along import project_to_reach as project_to_reach
     from nao_kin.ik.batch import BatchResult as BatchResult
     from nao_kin.ik.batch import solve_batch as solve_batch
+    from nao_kin.ik.catalogue import METHODS as METHODS
     from nao_kin.ik.loop import Budget as Budget
-    from nao_kin.ik.methods import METHODS as METHODS
     from nao_kin.ik.methods import solve as solve
     from nao_kin.ik.problem import IKResult as IKResult
     from nao_kin.ik.problem import Status as Status
     from nao_kin.ik.target import Target as Target
+    from nao_kin.ik.tree import solve_tree as solve_tree
+    from nao_kin.ik.tree_problem import TreeResult as TreeResult
     from nao_kin.known import robot_names as robot_names
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.tree import Tree as Tree
     from nao_kin.urdf_chain import UrdfChain as UrdfChain
     from nao_kin.view.export import export_html as export_html
     from nao_kin.view.export import show as show
@@ -46,6 +55,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "BatchResult": "ik.batch",
+    "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
     "Chain": "chain",
     "ChainJoint": "chain",
@@ -56,13 +66,16 @@ _HOME = {
     "FollowResult": "ik.along",
     "IKResult": "ik.problem",
     "LimitRule": "chain",
-    "METHODS": "ik.methods",
+    "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
     "Report": "checks.finding",
     "Robot": "robot",
+    "Solutions": "analytic.solutions",
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
+    "Tree": "tree",
+    "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",
     "check": "checks.checker",
     "compare": "crosscheck",
@@ -71,11 +84,16 @@ _HOME = {
     "export_html": "view.export",
     "follow": "ik.along",
     "load": "robot",
+    "nearest": "analytic.solutions",
     "project_to_reach": "ik.along",
     "robot_names": "known",
     "show": "view.export",
     "solve": "ik.methods",
+    "solve_all": "analytic.solutions",
+    "solve_all_batch": "analytic.batch",
     "solve_batch": "ik.batch",
+    "solve_tree": "ik.tree",
+    "to_dh": "dh_from_chain",
 }
 
 __all__ = list(_HOME)

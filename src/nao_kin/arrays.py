@@ -1,17 +1,20 @@
-"""The one place where what a caller passes becomes a float64 array of a known shape.
+"""The one place where what a caller passes becomes a float64 array of a known shape, or a float.
 
-Every function returns a fresh, C-contiguous copy, so nothing downstream can change the caller's data, and raises
-`InvalidInputError` naming the argument, what was expected and what came.
+Every array is a fresh, C-contiguous copy, so nothing downstream can change the caller's data. What does not fit
+raises `InvalidInputError` naming the argument, what was expected and what came.
 """
 
 from __future__ import annotations
+
+import contextlib
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nao_kin.errors import InvalidInputError
 
-__all__ = ["Floats", "frozen", "matrix", "rows", "vector"]
+__all__ = ["Floats", "frozen", "matrix", "positive", "rows", "vector"]
 
 Floats = NDArray[np.float64]
 
@@ -46,6 +49,22 @@ def rows(value: ArrayLike, what: str, width: int) -> Floats:
     if array.ndim != 2 or array.shape[1] != width:
         raise InvalidInputError(what, expected, f"shape {array.shape}")
     return _finite(array, what, array.shape, expected)
+
+
+def positive(value: object, what: str, unit: str = "", *, endless: bool = False) -> float:
+    """A number above 0, finite unless `endless`.
+
+    Raises:
+        InvalidInputError: None of these; truth values are no numbers.
+    """
+    found = math.nan
+    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
+        with contextlib.suppress(OverflowError):  # an integer too large for a float
+            found = float(value)
+    if not (0.0 < found < math.inf or (endless and found == math.inf)):
+        expected = f"a {'' if endless else 'finite '}number > 0{f' {unit}' if unit else ''}"
+        raise InvalidInputError(what, expected, _short(value))
+    return found
 
 
 def frozen(array: Floats) -> Floats:

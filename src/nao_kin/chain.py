@@ -24,6 +24,7 @@ __all__ = [
     "Chain",
     "ChainJoint",
     "JacobianFrame",
+    "JointSpace",
     "LimitRule",
     "OutsideLimit",
     "compiled_jacobians",
@@ -87,16 +88,44 @@ class LimitRule:
         return float(np.interp(value, self.at, self.lower)), float(np.interp(value, self.at, self.upper))
 
 
-@runtime_checkable
-class Chain(Protocol):
-    """A path of joints from a base frame to a tip frame, one plain number a joint.
-
-    `q` is a vector of n numbers in base-to-tip order [rad, or m for prismatic joints].
-    """
+class JointSpace(Protocol):
+    """Joints with ranges, one plain number each: what a chain and a tree of chains have in common."""
 
     @property
     def name(self) -> str:
         """What to call it in messages."""
+
+    @property
+    def joints(self) -> tuple[ChainJoint, ...]:
+        """The n joints, in the order of `q`."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Their names."""
+
+    @property
+    def lower(self) -> Floats:
+        """Least values (n,), read-only; −inf where there is none."""
+
+    @property
+    def upper(self) -> Floats:
+        """Greatest values (n,), read-only; +inf where there is none."""
+
+    @property
+    def max_velocity(self) -> Floats:
+        """Greatest speeds (n,) [rad/s or m/s], read-only; +inf where none is known."""
+
+    @property
+    def limit_rules(self) -> tuple[LimitRule, ...]:
+        """Coupled limits both of whose joints are among them."""
+
+
+@runtime_checkable
+class Chain(JointSpace, Protocol):
+    """A path of joints from a base frame to a tip frame, one plain number a joint.
+
+    `q` is a vector of n numbers in base-to-tip order [rad, or m for prismatic joints].
+    """
 
     @property
     def base_name(self) -> str:
@@ -107,32 +136,8 @@ class Chain(Protocol):
         """Name of the frame whose pose is given."""
 
     @property
-    def joints(self) -> tuple[ChainJoint, ...]:
-        """The n joints, base to tip."""
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Their names."""
-
-    @property
     def path_joint_names(self) -> tuple[str, ...]:
         """Names of the m physical joints of the path, coupled ones included; m ≥ n."""
-
-    @property
-    def lower(self) -> Floats:
-        """Least values (n,), read-only."""
-
-    @property
-    def upper(self) -> Floats:
-        """Greatest values (n,), read-only."""
-
-    @property
-    def max_velocity(self) -> Floats:
-        """Greatest speeds (n,), read-only."""
-
-    @property
-    def limit_rules(self) -> tuple[LimitRule, ...]:
-        """Coupled limits both of whose joints are in the chain."""
 
     @property
     def joint_path(self) -> JointPath:
@@ -173,8 +178,8 @@ class OutsideLimit:
         return f"{self.joint} = {self.value:.6g} is outside [{self.lower:.6g}, {self.upper:.6g}]"
 
 
-def configuration(chain: Chain, q: ArrayLike) -> Floats:
-    """`q` as a fresh vector of the chain's length.
+def configuration(chain: JointSpace, q: ArrayLike) -> Floats:
+    """`q` as a fresh vector of the chain's or tree's length.
 
     Raises:
         InvalidInputError: Wrong length or not finite; the message names the joints.
@@ -187,7 +192,7 @@ def configuration(chain: Chain, q: ArrayLike) -> Floats:
         raise InvalidInputError(error.what, f"{error.expected} ({names})", error.got) from None
 
 
-def outside_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> tuple[OutsideLimit, ...]:
+def outside_limits(chain: JointSpace, q: ArrayLike, tolerance: float = 0.0) -> tuple[OutsideLimit, ...]:
     """The joints of `q` outside their own or their coupled range by more than `tolerance` [rad or m]."""
     values = configuration(chain, q).tolist()
     index = {name: i for i, name in enumerate(chain.joint_names)}
@@ -200,12 +205,12 @@ def outside_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> tuple[
     )
 
 
-def in_limits(chain: Chain, q: ArrayLike, tolerance: float = 0.0) -> bool:
+def in_limits(chain: JointSpace, q: ArrayLike, tolerance: float = 0.0) -> bool:
     """Whether every joint is inside its own and its coupled range."""
     return not outside_limits(chain, q, tolerance)
 
 
-def into_limits(chain: Chain, q: Floats) -> Floats:
+def into_limits(chain: JointSpace, q: Floats) -> Floats:
     """The configuration with every joint moved to the nearest end of its range, coupled ranges last."""
     moved = np.clip(q, chain.lower, chain.upper)
     if chain.limit_rules:
@@ -217,12 +222,12 @@ def into_limits(chain: Chain, q: Floats) -> Floats:
     return moved
 
 
-def neutral(chain: Chain) -> Floats:
+def neutral(chain: JointSpace) -> Floats:
     """All zeros, moved into the limits: where solvers start unless told otherwise."""
     return into_limits(chain, np.zeros(len(chain.joints)))
 
 
-def random_configurations(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
+def random_configurations(chain: JointSpace, count: int, rng: np.random.Generator) -> Floats:
     """`count` configurations (count, n), uniform inside the limits; a joint without limits turns through ±π.
 
     A prismatic joint without limits moves through ±1 m, and a
@@ -289,7 +294,7 @@ def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floa
     return lower, upper, velocity
 
 
-def joint_table(chain: Chain, q: ArrayLike, title: str = "", note: str = "") -> Table:
+def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "") -> Table:
     """The joints of a chain with their values in radians and degrees, or metres."""
     cells = tuple(
         (joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}")

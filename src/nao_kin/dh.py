@@ -37,6 +37,7 @@ from nao_kin.dh_row import (
     in_si,
     known_convention,
 )
+from nao_kin.dh_to_urdf import urdf_text
 from nao_kin.errors import InvalidInputError, TableFileError, UnknownNameError
 from nao_kin.kernels.path import JointPath, PathJoint, joint_path
 from nao_kin.se3 import PoseLike, as_pose
@@ -152,6 +153,17 @@ class DHChain:
         rows = [{f.name: getattr(row, f.name) for f in fields(row)} for row in self.rows]
         heading = {key: getattr(self, key) for key in ("name", "convention", "base_name", "tip_name")}
         return format_table_file(heading, self.base.homogeneous, self.tool.homogeneous, rows)
+
+    def to_urdf(self) -> str:
+        """The table as a URDF file's text that `nao_kin.load` reads: the same chain from `base_name` to `tip_name`.
+
+        A revolute joint without limits becomes a continuous one; where only one end is open, or a joint slides without
+        end, ±1e9 stands for it, because URDF has no word for that.
+
+        Raises:
+            InvalidInputError: Base and tip bear the same name.
+        """
+        return urdf_text(self.name, self.base_name, self.tip_name, self.joints, self.joint_path)
 
     def read_as(self, convention: Convention) -> DHChain:
         """The same numbers read in a convention, which is another arm unless it is the table's own."""

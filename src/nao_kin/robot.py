@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
 from nao_kin.pinocchio_layout import PinocchioLayout
 from nao_kin.table import Column, Table
+from nao_kin.tree import Tree
 from nao_kin.urdf import UrdfDocument, read_urdf
 from nao_kin.urdf_chain import UrdfChain
 from nao_kin.urdf_path import Coupling, joint_range, motor_ranges
@@ -236,6 +237,21 @@ class Robot:
         self._require_frames(base, tip)
         named = (name for name, frames in self.chain_frames.items() if frames == (base, tip))
         return UrdfChain(self, base, tip, label=next(named, ""))
+
+    def tree(self, base: str, tips: Sequence[str]) -> Tree:
+        """The chains from one base frame to several tip frames as one: joints that they share are the same columns.
+
+        ``robot.tree("torso", ["LArm", "RArm"])``; the base may be any frame, a foot for example.
+
+        Raises:
+            UnknownNameError: Unknown frame; carries near matches.
+            InvalidInputError: No tips, or one of them twice.
+            NoPathError: No moving joint lies between the base and a tip.
+        """
+        # A string is a sequence of frames with short names.
+        if isinstance(tips, str) or not isinstance(tips, Sequence) or not all(isinstance(tip, str) for tip in tips):
+            raise InvalidInputError("tips", "a list of frames, as ['LArm', 'RArm']", repr(tips)[:60])
+        return Tree.of_chains([self.chain(base, tip) for tip in tips])
 
     def path(self, base: str, tip: str) -> tuple[tuple[UrdfJoint, ...], tuple[UrdfJoint, ...]]:
         """The joints met going up the tree from base, then those met going down to tip; fixed ones included."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot
     from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "Step", "chain_joints", "joint_range", "motor_ranges", "walk"]
+__all__ = ["Coupling", "Step", "chain_joints", "couplings_on", "joint_range", "motor_ranges", "walk"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def walk(robot: Robot, base: str, tip: str) -> tuple[tuple[Step, ...], pin.SE3]:
     """
     up, down = robot.path(base, tip)
     met = [(joint, True) for joint in up] + [(joint, False) for joint in down]
-    couplings = _couplings_on([joint.name for joint, _ in met if joint.kind != "fixed"], robot.couplings)
+    couplings = couplings_on([joint.name for joint, _ in met if joint.kind != "fixed"], robot.couplings)
     # In the order of the path; an owner may come after the first joint that goes with it.
     own = [name for name, c in couplings.items() if c.leader == name]
     steps: list[Step] = []
@@ -99,7 +99,7 @@ def walk(robot: Robot, base: str, tip: str) -> tuple[tuple[Step, ...], pin.SE3]:
     return tuple(steps), T_joint_here
 
 
-def _couplings_on(names: Sequence[str], couplings: Sequence[Coupling]) -> dict[str, Coupling]:
+def couplings_on(names: Sequence[str], couplings: Sequence[Coupling]) -> dict[str, Coupling]:
     """How each of the named joints hangs on the one among them that owns its motor's column.
 
     That is the leader where it is among them; else the first of its followers stands for the motor, and the others go

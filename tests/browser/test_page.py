@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from nao_kin.crosscheck import compare
+from nao_kin.documents.chains import document_chain
 from nao_kin.robot import load
-from nao_kin.view.export import export_html, show
+from nao_kin.view.export import export_comparison, export_html, show
 from nao_kin.view.record import node_paths
 from nao_kin.view.scene import robot_scene
 
@@ -137,6 +139,18 @@ def test_a_new_size_keeps_the_robot_in_view(tmp_path: Path, visit: Callable[...,
     assert mask.shape == (700, 500)
     assert mask.any()
     assert not np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).any()
+
+
+def test_a_comparison_shows_both_chains(tmp_path: Path, visit: Callable[..., Any]) -> None:
+    found = compare(document_chain("thesis_left_arm"), load("nao_v50_h21").chain("left_arm"), samples=50)
+    page = visit(export_comparison(tmp_path / "both.html", found, explain=True)).page
+    assert page.get_by_text("Orange: thesis_left_arm").is_visible()
+    page.get_by_text("Explanation").click()
+    assert page.get_by_text("modified convention").first.is_visible()
+    picture = pixels(page)
+    red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
+    assert ((red - blue > 80) & (red - green > 30)).sum() > 300  # orange and red sticks
+    assert ((blue - red > 60) & (blue - green > 30)).sum() > 300  # blue ones
 
 
 def test_the_policy_stops_every_way_out(tmp_path: Path, visit: Callable[..., Any]) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from nao_kin.chain import Chain, random_configurations
-from nao_kin.ik import rules
+from nao_kin.ik.catalogue import METHODS
 from nao_kin.ik.compiled import run_of, settings_of, solve_goal, tables_of, trace_rows
-from nao_kin.ik.loop import Budget, run_reference
+from nao_kin.ik.loop import Budget, Update, run_reference
 from nao_kin.ik.problem import Problem, Run
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.se3 import rotation_angle
@@ -43,7 +43,8 @@ def goals_of(chain: Chain, count: int, rng: np.random.Generator) -> np.ndarray:
 
 def settings(chain: Chain, kind: str = "pose", budget: Budget | None = None, **options: object) -> np.ndarray:
     code, tolerances = KINDS[kind], options.pop("tolerances", TOLERANCES)
-    return settings_of(tables_of(chain), code, rules.LEVENBERG_MARQUARDT, budget or Budget(), tolerances, **options)
+    options.setdefault("parameters", METHODS["lm"].tuned({}, None))
+    return settings_of(tables_of(chain), code, METHODS["lm"].code, budget or Budget(), tolerances, **options)
 
 
 def compiled(
@@ -56,7 +57,8 @@ def compiled(
 
 def reference(chain: Chain, goal: np.ndarray, q0: np.ndarray, kind: str, budget: Budget) -> Run:
     problem = Problem(chain, Target(kind, goal.copy()))
-    return run_reference(problem, rules.levenberg_marquardt, q0, budget, np.random.default_rng(0), keep_trace=True)
+    method = Update(METHODS["lm"].code, METHODS["lm"].tuned({}, None))
+    return run_reference(problem, method, q0, budget, np.random.default_rng(0), keep_trace=True)
 
 
 def errors(chain: Chain, q: np.ndarray, goal: np.ndarray) -> tuple[float, float]:

@@ -28,9 +28,11 @@ def ik(
     xyz: Annotated[Triple | None, typer.Option(help="Wanted position in the base frame [m].")] = None,
     rpy: Annotated[Triple | None, typer.Option(help="Wanted roll pitch yaw [rad]; without it any will do.")] = None,
     posture: Annotated[list[str] | None, typer.Option(help="NAME=VALUE, repeated: the target is its pose.")] = None,
-    deg: Annotated[bool, typer.Option("--deg", help="--rpy and --posture are in degrees.")] = False,
+    deg: Annotated[bool, typer.Option("--deg", help="--rpy, --posture and --lock are in degrees.")] = False,
     method: Annotated[str, typer.Option(help="A name in nao_kin.METHODS.")] = "lm",
     seed: Annotated[int, typer.Option(help="Seed of the stored starts.")] = 0,
+    all: Annotated[bool, typer.Option("--all", help="Every solution, by closed form.")] = False,
+    lock: Annotated[list[str] | None, typer.Option(help="With --all, NAME=VALUE, repeated: a joint's value.")] = None,
     html: Annotated[str | None, typer.Option(help="Write a page that shows the solution.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:
@@ -39,7 +41,15 @@ def ik(
     from nao_kin.ik.methods import solve
 
     model, path = robot_and_chain(robot, chain, base, tip)
-    result = solve(path, _target(model, path, xyz, rpy, posture, deg), method=method, seed=seed)
+    target = _target(model, path, xyz, rpy, posture, deg)
+    if all:
+        if method != "lm":
+            raise typer.BadParameter("--method is for one solution; leave out --all.")
+        _every_solution(path, target, parse_posture(lock or [], deg, model), html, format)
+        return
+    if lock:
+        raise typer.BadParameter("--lock goes with --all.")
+    result = solve(path, target, method=method, seed=seed)
     if format is OutputFormat.json:
         report_json(result_data(result))
     else:
@@ -49,6 +59,23 @@ def ik(
 
         typer.echo(f"wrote {export_html(html, model, model.complete(result.posture))}", err=True)
     if not result.solved:
+        raise typer.Exit(1)
+
+
+def _every_solution(
+    path: UrdfChain, target: TargetLike, locked: dict[str, float], html: str | None, format: OutputFormat
+) -> None:
+    from nao_kin.analytic.solutions import solve_all
+
+    if html is not None:
+        raise typer.BadParameter("--html shows one solution; leave out --all.")
+    solutions = solve_all(path, target, locked=locked)
+    if format is OutputFormat.json:
+        data = [result_data(result) | {"branch": result.branch} for result in solutions]
+        report_json({"chain": path.name, "reason": solutions.reason, "solutions": data})
+    else:
+        report(solutions.table(f"{path.name}: {path.base} → {path.tip}, {len(solutions)} solutions"))
+    if not solutions.solved:
         raise typer.Exit(1)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_kin.arrays import rows
 from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik import descent
+from nao_kin.ik import layout
 from nao_kin.ik.compiled import solve_goals
 from nao_kin.ik.measure import measure_many
 from nao_kin.ik.methods import prepared, start_of
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.loop import Budget
 
-__all__ = ["BatchResult", "solve_batch"]
+__all__ = ["AUDITED", "AUDIT_TOLERANCE", "CHUNK", "BatchResult", "Wanted", "inside_limits", "solve_batch"]
 
 CHUNK: Final = 1 << 16
 """Targets worked on at a time: scratch memory does not grow with the batch."""
@@ -105,6 +105,7 @@ def solve_batch(
     budget: Budget | None = None,
     seed: int = 0,
     audit: Literal["sample", "all"] = "sample",
+    parameters: Mapping[str, float] | None = None,
 ) -> BatchResult:
     """Solves for many targets on all cores; a row is what `nao_kin.solve` would give, to the last bit.
 
@@ -120,16 +121,17 @@ def solve_batch(
         budget: How long to try for each.
         seed: For the stored starts and the sample.
         audit: ``"sample"`` or ``"all"``.
+        parameters: What to tune the method with, see `nao_kin.solve`.
 
     Raises:
         InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds.
-        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
+        UnknownNameError: No such method, parameter, or joint that the start names; carries near matches.
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
-    wanted = _Wanted.of(targets)
+    wanted = Wanted.of(targets)
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
-    ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed)
+    ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed, parameters)
     n, N = len(chain.joints), len(wanted.given)
     starts = _starts(chain, q0, N, ready.neutral)
     result = BatchResult(
@@ -146,7 +148,7 @@ def solve_batch(
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Wanted:
+class Wanted:
     """The targets as they came, made into what solvers take chunk by chunk.
 
     Attributes:
@@ -158,7 +160,12 @@ class _Wanted:
     given: NDArray[Any]
 
     @classmethod
-    def of(cls, targets: ArrayLike | Sequence[Target]) -> _Wanted:
+    def of(cls, targets: ArrayLike | Sequence[Target]) -> Wanted:
+        """The targets as callers give them.
+
+        Raises:
+            InvalidInputError: None of the forms that `solve_batch` takes, or mixed kinds.
+        """
         if isinstance(targets, Sequence) and len(targets) and all(isinstance(t, Target) for t in targets):
             wanted: list[Any] = list(targets)
             if len(sorts := {(t.kind, t.weights) for t in wanted}) > 1:
@@ -211,11 +218,11 @@ def _chunks(count: int) -> Iterator[slice]:
 
 def _refuse(outcomes: Floats, offset: int) -> None:
     """Raises for the first row whose target or start made no sense."""
-    bad = np.flatnonzero(outcomes[:, descent.CODE] < 0.0)
+    bad = np.flatnonzero(outcomes[:, layout.CODE] < 0.0)
     if not len(bad):
         return
-    row, amount = offset + int(bad[0]), float(outcomes[bad[0], descent.AMOUNT])
-    if outcomes[bad[0], descent.CODE] == descent.BAD_START:
+    row, amount = offset + int(bad[0]), float(outcomes[bad[0], layout.AMOUNT])
+    if outcomes[bad[0], layout.CODE] == layout.BAD_START:
         raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
@@ -227,24 +234,25 @@ def _judge(
     """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
     from nao_kin.kernels.audit import tips
 
-    chain, q = result.chain, np.ascontiguousarray(outcomes[:, descent.OUTCOME :])
+    chain, q = result.chain, np.ascontiguousarray(outcomes[:, layout.OUTCOME :])
     position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
-    inside = _inside(chain, q, tolerances.limits)
-    codes = outcomes[:, descent.CODE].astype(np.int8)
+    inside = inside_limits(chain, q, tolerances.limits)
+    codes = outcomes[:, layout.CODE].astype(np.int8)
     ended = np.array([_STATUSES.index(status) for status in _ENDED], dtype=np.int8)[codes]
     ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
     ended[reached & inside] = _STATUSES.index(Status.SOLVED)
     ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
     result.q[chunk], result.codes[chunk] = q, ended
     result.position_error[chunk], result.rotation_error[chunk] = position, rotation
-    result.iterations[chunk] = outcomes[:, descent.ITERATIONS]
+    result.iterations[chunk] = outcomes[:, layout.ITERATIONS]
 
 
 _ENDED = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
 
 
-def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
+def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
+    """Whether every joint of each row (N, n) is within its own and its coupled range, give or take the tolerance."""
     inside = ((q >= chain.lower - tolerance) & (q <= chain.upper + tolerance)).all(axis=1)
     index = {name: i for i, name in enumerate(chain.joint_names)}
     for rule in chain.limit_rules:
@@ -257,7 +265,7 @@ def _inside(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
 
 def _audit(
     result: BatchResult,
-    wanted: _Wanted,
+    wanted: Wanted,
     tolerances: Tolerances,
     rng: np.random.Generator,
     *,

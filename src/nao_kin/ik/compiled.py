@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, descent
+from nao_kin.ik import aim, descent, layout
+from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.limits import packed_rules
@@ -19,6 +21,8 @@ from nao_kin.kernels.motion import packed_joints
 from nao_kin.se3 import ROTATION_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
@@ -76,7 +80,7 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
 
 def _tables(chain: Chain, seed: int) -> Tables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
-    joints, size = packed_joints(chain.joint_path), descent.OUTCOME + len(chain.joints)
+    joints, size = packed_joints(chain.joint_path), layout.OUTCOME + len(chain.joints)
     limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
     return Tables(
         joints=joints,
@@ -98,6 +102,8 @@ def settings_of(
     tolerances: Tolerances,
     weights: ArrayLike = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
     from_stored: bool = False,
+    parameters: Sequence[float] = (),
+    orientation_error: int = ROTATION_VECTOR,
 ) -> Floats:
     """What is wanted and how long to try, as one array; make it once for many calls.
 
@@ -110,26 +116,30 @@ def settings_of(
         weights: Weight of each base axis (6,), position x y z, rotation x y z; 0 leaves it free. Other weights than 1
             decide which compromise is found where not all can be met, never what counts as reached.
         from_stored: Start at the stored configuration nearest to the target, and not at q0.
+        parameters: Those of the rule, in its order.
+        orientation_error: A form of it, see `nao_kin.ik.orientation`.
     """
-    settings = np.zeros(descent.SETTINGS)
-    settings[descent.KIND], settings[descent.RULE] = kind, rule
-    settings[descent.MAX_ITERATIONS], settings[descent.RESTARTS] = budget.iterations, budget.restarts
-    settings[descent.PATIENCE], settings[descent.LARGEST_STEP] = budget.patience, budget.largest_step
-    settings[descent.FROM_STORED] = from_stored
-    settings[descent.POSITION_TOLERANCE], settings[descent.ROTATION_TOLERANCE] = (
+    settings = np.zeros(layout.SETTINGS)
+    settings[layout.KIND], settings[layout.RULE] = kind, rule
+    settings[layout.MAX_ITERATIONS], settings[layout.RESTARTS] = budget.iterations, budget.restarts
+    settings[layout.PATIENCE], settings[layout.LARGEST_STEP] = budget.patience, budget.largest_step
+    settings[layout.FROM_STORED] = from_stored
+    settings[layout.POSITION_TOLERANCE], settings[layout.ROTATION_TOLERANCE] = (
         tolerances.position,
         tolerances.rotation,
     )
-    settings[descent.GOAL_TOLERANCE] = ROTATION_TOLERANCE
-    settings[descent.WEIGHTS : descent.WEIGHTS + 6] = weights
-    settings[descent.CENTRE : descent.OUTER + 1] = tables.shell
-    settings[descent.CLOSENESS] = tables.closeness
+    settings[layout.GOAL_TOLERANCE] = ROTATION_TOLERANCE
+    settings[layout.WEIGHTS : layout.WEIGHTS + 6] = weights
+    settings[layout.CENTRE : layout.OUTER + 1] = tables.shell
+    settings[layout.CLOSENESS] = tables.closeness
+    settings[layout.ORIENTATION_ERROR] = orientation_error
+    settings[layout.GAINS : layout.GAINS + len(parameters)] = parameters
     return settings
 
 
 def trace_rows(outcome: Floats, n: int) -> Floats:
     """Room for the trace of a solve with this outcome: a row (q, position error, rotation error, start) an iterate."""
-    return np.empty((int(outcome[descent.ITERATIONS] + outcome[descent.STARTS]), n + 3))
+    return np.empty((int(outcome[layout.ITERATIONS] + outcome[layout.STARTS]), n + 3))
 
 
 def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
@@ -145,11 +155,19 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
     t = tables
     if trace is None:
         work = np.empty(t.work_size)
-        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work)
+        memory = _memory(tables, settings)
+        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
         return work[: t.outcome_size]
-    outcome, scratch = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size)
-    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch)
+    outcome, scratch, memory = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size), _memory(t, settings)
+    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
     return outcome
+
+
+def _memory(tables: Tables, settings: Floats) -> Floats | None:
+    """What methods other than the default need besides."""
+    if settings[layout.RULE] == LEVENBERG_MARQUARDT:
+        return None
+    return np.empty(descent.memory_size(tables.joints, tables.limits.shape[1]))
 
 
 def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
@@ -158,8 +176,8 @@ def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> 
     An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.
     """
     t = tables
-    outcomes = np.empty((len(goals), t.outcome_size))
-    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size)
+    outcomes, memory = np.empty((len(goals), t.outcome_size)), _memory(t, settings)
+    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size, memory)
     return outcomes
 
 
@@ -175,16 +193,16 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         InvalidInputError: The target or the start made no sense; carries the size of the violation.
     """
     told = outcome.tolist()
-    code, iterations, starts = int(told[descent.CODE]), int(told[descent.ITERATIONS]), int(told[descent.STARTS])
+    code, iterations, starts = int(told[layout.CODE]), int(told[layout.ITERATIONS]), int(told[layout.STARTS])
     if code < 0:
-        raise _refusal(code, told[descent.AMOUNT])
+        raise _refusal(code, told[layout.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
-    moved, amount = told[descent.START_MOVED] != 0.0, told[descent.AMOUNT]
-    return Run(outcome[descent.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
+    moved, amount = told[layout.START_MOVED] != 0.0, told[layout.AMOUNT]
+    return Run(outcome[layout.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:
-    if code == descent.BAD_START:
+    if code == layout.BAD_START:
         return InvalidInputError("q0", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     return InvalidInputError("target", "a rigid pose, a position, or unit axes", got)

@@ -2,18 +2,57 @@
 
 Python hands over plain arrays, because every tuple or object costs a call as much as an iteration; what their entries
 mean stands below. There is no random state: an outcome depends on the arguments only, not on other targets or threads.
+
+Every function here is compiled in two versions. Without `memory`, which is None for the default method, the compiler
+drops the branches of all others, so the version that most people need compiles and loads in a fraction of the time.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, goal_violation, raw_error, shape_rows
-from nao_kin.ik.loop import POLISHED, REACHED
-from nao_kin.ik.rules import update
+from nao_kin.ik.aim import ORIENTATION, POSITION, goal_violation, raw_error, shape_rows
+from nao_kin.ik.geometric import CCD, sweep, sweep_memory
+from nao_kin.ik.heading import measure_starts, misses_by, take_nearest, to_shell
+from nao_kin.ik.layout import (
+    AMOUNT,
+    BAD_GOAL,
+    BAD_START,
+    BUDGET_SPENT,
+    CLOSENESS,
+    CODE,
+    FROM_STORED,
+    GAINS,
+    GOAL_TOLERANCE,
+    ITERATIONS,
+    KIND,
+    LARGEST_STEP,
+    MAX_ITERATIONS,
+    MERIT,
+    NOT_FINITE,
+    ORIENTATION_ERROR,
+    OUT_OF_REACH,
+    OUTCOME,
+    PATIENCE,
+    POSITION_ERROR,
+    POSITION_TOLERANCE,
+    RESTARTS,
+    ROTATION_ERROR,
+    ROTATION_TOLERANCE,
+    RULE,
+    SOLVED,
+    STALLED,
+    START_MOVED,
+    STARTS,
+    TIP,
+    WEIGHTS,
+)
+from nao_kin.ik.loop import PATIENCE_ONCE_REACHED, POLISHED, REACHED
+from nao_kin.ik.orientation import recast_rows
+from nao_kin.ik.rules import levenberg_marquardt, update
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.limits import hold, move_inside
 from nao_kin.kernels.motion import jacobian, place
@@ -21,31 +60,16 @@ from nao_kin.kernels.motion import jacobian, place
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
 
-# Entries of an outcome (OUTCOME + n,): errors of the best joints [m], [rad], why the run ended, iterations over all
-# starts, starts, whether the caller's start was moved into the limits, an amount that belongs to the code, the larger
-# error in units of its tolerance; the best joints follow.
-POSITION_ERROR, ROTATION_ERROR, CODE, ITERATIONS, STARTS, START_MOVED, AMOUNT, MERIT, OUTCOME = range(9)
-
-# Codes. The amount is by how much the target misses the reach [m], by how much the goal is none (see `goal_violation`),
-# or which joint of the start is not finite.
-SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE = range(5)
-BAD_GOAL, BAD_START = -1, -2
-
-# Entries of the settings (SETTINGS,): kind of target, update rule, the budget's four, whether the first start is the
-# nearest stored one instead of the caller's, tolerances [m], [rad], largest violation of a goal that is still
-# one, closeness of the stored starts [1/m²], reach shell (centre (3), least and greatest distance) [m], weight of each
-# base axis (6).
-KIND, RULE, MAX_ITERATIONS, RESTARTS, PATIENCE, LARGEST_STEP, FROM_STORED = range(7)
-POSITION_TOLERANCE, ROTATION_TOLERANCE, GOAL_TOLERANCE, CLOSENESS, CENTRE, INNER, OUTER = 7, 8, 9, 10, 11, 14, 15
-WEIGHTS, SETTINGS = 16, 22
-
-_TIP: Final = 12
-
 
 def scratch_size(joints: Floats, stored: Floats) -> int:
     """Numbers of scratch memory that `solve_one` needs for a chain (m + 1, 16) with stored starts (K, n + 12)."""
-    m, n = joints.shape[0] - 1, stored.shape[1] - _TIP
-    return int(2 * n + 6 * m + _TIP + 6 + 6 * n + 6 + 36 + 16 + stored.shape[0])
+    m, n = joints.shape[0] - 1, stored.shape[1] - TIP
+    return int(2 * n + 6 * m + TIP + 6 + 6 * n + 6 + 36 + 16 + stored.shape[0])
+
+
+def memory_size(joints: Floats, n: int) -> int:
+    """Numbers of memory that methods other than the default need for a chain (m + 1, 16) of n columns."""
+    return max(3 * n, sweep_memory(joints))
 
 
 @leaf_jit
@@ -60,6 +84,7 @@ def solve_one(
     outcome: Floats,
     trace: Floats,
     scratch: Floats,
+    memory: Floats | None,
 ) -> None:
     """Runs starts until one reaches the target or the budget is spent.
 
@@ -75,30 +100,31 @@ def solve_one(
         trace: Written, a row (q, position error, rotation error, number of the start) (n + 3,) an iterate, as many as
             iterations and starts together; what does not fit is left out.
         scratch: Memory (`scratch_size`,).
+        memory: More of it (`memory_size`,), or None for the default method; see the module.
     """
     if not _begin(limits, coupled, settings, goal, q0, outcome, scratch):
         return
     distances = scratch[scratch.shape[0] - stored.shape[0] :]
-    misses_by = _misses_by(settings, goal)
-    if misses_by > 0.0:  # then the nearest place that link lengths allow is what to head for
+    missing = misses_by(settings, goal)
+    if missing > 0.0:  # then the nearest place that link lengths allow is what to head for
         near = scratch[scratch.shape[0] - stored.shape[0] - 16 : scratch.shape[0] - stored.shape[0]].reshape(4, 4)
-        _to_shell(settings, goal, near)
+        to_shell(settings, goal, near)
         goal = near
     if settings[FROM_STORED] != 0.0:
-        _measure_starts(settings, goal, stored, distances)
-        _take_nearest(stored, distances, scratch)
-    code = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch)
-    if code != SOLVED and misses_by == 0.0 and settings[FROM_STORED] == 0.0:
-        _measure_starts(settings, goal, stored, distances)
+        measure_starts(settings, goal, stored, distances)
+        take_nearest(stored, distances, scratch)
+    code = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch, memory)
+    if code != SOLVED and missing == 0.0 and settings[FROM_STORED] == 0.0:
+        measure_starts(settings, goal, stored, distances)
     starts = 1.0 + min(settings[RESTARTS], stored.shape[0] - settings[FROM_STORED])
-    while code != SOLVED and misses_by == 0.0 and outcome[STARTS] < starts:
-        _take_nearest(stored, distances, scratch)
-        again = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch)
+    while code != SOLVED and missing == 0.0 and outcome[STARTS] < starts:
+        take_nearest(stored, distances, scratch)
+        again = _descend(joints, limits, coupled, settings, goal, outcome, trace, scratch, memory)
         # One start that was still getting closer is worth a word: a larger budget may help.
         if not (again == STALLED and code == BUDGET_SPENT):
             code = again
-    outcome[CODE] = code if misses_by == 0.0 else OUT_OF_REACH
-    outcome[AMOUNT] = misses_by
+    outcome[CODE] = code if missing == 0.0 else OUT_OF_REACH
+    outcome[AMOUNT] = missing
 
 
 @leaf_jit
@@ -111,11 +137,12 @@ def solve_quickly(
     goal: Floats,
     q0: Floats,
     work: Floats,
+    memory: Floats | None,
 ) -> None:
     """`solve_one` without a trace: the first OUTCOME + n numbers of `work` receive the outcome, the rest is scratch."""
     size = OUTCOME + q0.shape[0]
     nothing = work[:0].reshape(0, 1)
-    solve_one(joints, limits, coupled, stored, settings, goal, q0, work[:size], nothing, work[size:])
+    solve_one(joints, limits, coupled, stored, settings, goal, q0, work[:size], nothing, work[size:], memory)
 
 
 @parallel_jit
@@ -129,13 +156,21 @@ def solve_many(
     q0: Floats,
     outcomes: Floats,
     scratch_size: int,
+    memory: Floats | None,
 ) -> None:
-    """`solve_one` for each goal (N, 4, 4), outcomes (N, OUTCOME + n), from q0 (N, n), or (1, n) for all."""
+    """`solve_one` for each goal (N, 4, 4), outcomes (N, OUTCOME + n), from q0 (N, n), or (1, n) for all.
+
+    `memory` says only how much of it a target needs.
+    """
     nothing = np.empty((0, 1))
     for i in prange(goals.shape[0]):
         start = q0[np.int64(i) if q0.shape[0] > 1 else 0]
         scratch = np.empty(scratch_size)
-        solve_one(joints, limits, coupled, stored, settings, goals[i], start, outcomes[i], nothing, scratch)
+        if memory is None:
+            solve_one(joints, limits, coupled, stored, settings, goals[i], start, outcomes[i], nothing, scratch, None)
+        else:
+            own = np.empty(memory.shape[0])
+            solve_one(joints, limits, coupled, stored, settings, goals[i], start, outcomes[i], nothing, scratch, own)
 
 
 @leaf_jit
@@ -170,13 +205,14 @@ def _descend(
     outcome: Floats,
     trace: Floats,
     scratch: Floats,
+    memory: Floats | None,
 ) -> int:
     """Iterates from the start in `scratch`; the best joints of all starts go to the outcome. Returns a code."""
     m, n, kind = joints.shape[0] - 1, limits.shape[1], int(settings[KIND])
     q, step = scratch[:n], scratch[n : 2 * n]
     axes, rest = scratch[2 * n : 2 * n + 6 * m].reshape(m, 6), scratch[2 * n + 6 * m :]
-    tip, raw, full = rest[:_TIP], rest[_TIP : _TIP + 6], rest[_TIP + 6 : _TIP + 6 + 6 * n].reshape(6, n)
-    rest = rest[_TIP + 6 + 6 * n :]
+    tip, raw, full = rest[:TIP], rest[TIP : TIP + 6], rest[TIP + 6 : TIP + 6 + 6 * n].reshape(6, n)
+    rest = rest[TIP + 6 + 6 * n :]
     # The rows that the target binds: those of the position, of the rotation, or all.
     first, last = 3 if kind == ORIENTATION else 0, 3 if kind == POSITION else 6
     rows = last - first
@@ -194,19 +230,64 @@ def _descend(
         previous, waited = merit, waited + 1
         if merit < 0.5 * halved:
             halved, waited = merit, 0
-        if waited >= settings[PATIENCE]:
+        if waited >= (min(settings[PATIENCE], PATIENCE_ONCE_REACHED) if reached else settings[PATIENCE]):
             return SOLVED if reached else STALLED
         if iteration == allowed:
             break
+        if memory is not None and settings[RULE] >= CCD:
+            rule, closeness = int(settings[RULE]), settings[CLOSENESS]
+            sweep(rule, joints, limits, coupled, kind, goal, closeness, q, axes, tip, memory)
+            outcome[ITERATIONS] += 1.0
+            continue
         jacobian(joints, axes, tip, full)
-        shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
-        hold(limits, q, e, J)
-        update(int(settings[RULE]), J, e, A, y, step)
+        if memory is None:
+            shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
+            hold(limits, q, e, J)
+            levenberg_marquardt(J, e, settings[GAINS:], A, y, step)
+        else:
+            recast_rows(int(settings[ORIENTATION_ERROR]), goal, tip, raw, full)
+            shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
+            hold(limits, q, e, J)
+            steps, trial = memory[: 2 * n].reshape(2, n), memory[2 * n : 3 * n]
+            if update(int(settings[RULE]), J, e, settings[GAINS:], A, y, steps) == 2:
+                _keep_better(joints, limits, coupled, settings, goal, q, steps, trial, axes, tip, raw)
+            for k in range(n):
+                step[k] = steps[0, k]
         if not _take_step(step, settings[LARGEST_STEP], q):
             return NOT_FINITE
         move_inside(q, limits, coupled)
         outcome[ITERATIONS] += 1.0
     return SOLVED if reached else BUDGET_SPENT
+
+
+@leaf_jit
+def _keep_better(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    settings: Floats,
+    goal: Floats,
+    q: Floats,
+    steps: Floats,
+    trial: Floats,
+    axes: Floats,
+    tip: Floats,
+    raw: Floats,
+) -> None:
+    """Puts that row of `steps` (2, n) first which leads closer to the goal; the last three are scratch."""
+    least = math.inf
+    for row in range(2):
+        for k in range(q.shape[0]):
+            trial[k] = q[k]
+        if _take_step(steps[row], settings[LARGEST_STEP], trial):
+            move_inside(trial, limits, coupled)
+            place(joints, trial, axes, tip)
+            raw_error(int(settings[KIND]), goal, tip, raw)
+            merit = _merit(settings, raw)
+            if merit < least:
+                least = merit
+                for k in range(q.shape[0]):
+                    steps[0, k] = steps[row, k]
 
 
 @leaf_jit
@@ -216,18 +297,11 @@ def _note(settings: Floats, q: Floats, raw: Floats, outcome: Floats, trace: Floa
     Whether the target is reached is asked of the errors themselves, on every axis that is not left free.
     """
     n = q.shape[0]
-    position, rotation, weighted_position, weighted_rotation = 0.0, 0.0, 0.0, 0.0
+    position, rotation, merit = 0.0, 0.0, _merit(settings, raw)
     for i in range(3):
-        w, v = settings[WEIGHTS + i], settings[WEIGHTS + 3 + i]
-        weighted_position += (w * raw[i]) ** 2
-        weighted_rotation += (v * raw[3 + i]) ** 2
-        position += raw[i] ** 2 if w > 0.0 else 0.0
-        rotation += raw[3 + i] ** 2 if v > 0.0 else 0.0
+        position += raw[i] ** 2 if settings[WEIGHTS + i] > 0.0 else 0.0
+        rotation += raw[3 + i] ** 2 if settings[WEIGHTS + 3 + i] > 0.0 else 0.0
     position, rotation = math.sqrt(position), math.sqrt(rotation)
-    merit = max(
-        _ratio(math.sqrt(weighted_position), settings[POSITION_TOLERANCE]),
-        _ratio(math.sqrt(weighted_rotation), settings[ROTATION_TOLERANCE]),
-    )
     if merit < outcome[MERIT]:
         outcome[MERIT], outcome[POSITION_ERROR], outcome[ROTATION_ERROR] = merit, position, rotation
         for k in range(n):
@@ -239,6 +313,19 @@ def _note(settings: Floats, q: Floats, raw: Floats, outcome: Floats, trace: Floa
         trace[row, n], trace[row, n + 1], trace[row, n + 2] = position, rotation, outcome[STARTS] - 1.0
     within = position <= REACHED * settings[POSITION_TOLERANCE] and rotation <= REACHED * settings[ROTATION_TOLERANCE]
     return merit, within
+
+
+@leaf_jit
+def _merit(settings: Floats, raw: Floats) -> float:
+    """The larger weighted error in units of its tolerance."""
+    position, rotation = 0.0, 0.0
+    for i in range(3):
+        position += (settings[WEIGHTS + i] * raw[i]) ** 2
+        rotation += (settings[WEIGHTS + 3 + i] * raw[3 + i]) ** 2
+    return max(
+        _ratio(math.sqrt(position), settings[POSITION_TOLERANCE]),
+        _ratio(math.sqrt(rotation), settings[ROTATION_TOLERANCE]),
+    )
 
 
 @leaf_jit
@@ -261,70 +348,3 @@ def _take_step(step: Floats, largest_step: float, q: Floats) -> bool:
     for k in range(q.shape[0]):
         q[k] += scale * step[k]
     return True
-
-
-@leaf_jit
-def _measure_starts(settings: Floats, goal: Floats, stored: Floats, distances: Floats) -> None:
-    """How far the tip of each stored start (K, n + 12) is from the goal, in what the kind binds."""
-    n, kind, closeness = stored.shape[1] - _TIP, int(settings[KIND]), settings[CLOSENESS]
-    for k in range(stored.shape[0]):
-        total = 0.0
-        if kind != ORIENTATION:
-            for i in range(3):
-                total += closeness * (stored[k, n + 9 + i] - goal[i, 3]) ** 2
-        if kind not in (POSITION, POINTING):
-            for i in range(3):
-                for j in range(3):
-                    total += (stored[k, n + 3 * i + j] - goal[i, j]) ** 2
-        distances[k] = total
-
-
-@leaf_jit
-def _take_nearest(stored: Floats, distances: Floats, scratch: Floats) -> None:
-    """Puts the nearest start not taken before to the front of the scratch memory."""
-    nearest = 0
-    for k in range(1, distances.shape[0]):
-        if distances[k] < distances[nearest]:
-            nearest = k
-    distances[nearest] = math.inf
-    for k in range(stored.shape[1] - _TIP):
-        scratch[k] = stored[nearest, k]
-
-
-@leaf_jit
-def _to_shell(settings: Floats, goal: Floats, near: Floats) -> None:
-    """Writes the goal, its position moved to the nearest point of the reach shell."""
-    distance = _from_centre(settings, goal)
-    scale = min(max(distance, settings[INNER]), settings[OUTER]) / distance if distance > 0.0 else 0.0
-    for i in range(4):
-        for j in range(4):
-            near[i, j] = goal[i, j]
-    for i in range(3):
-        near[i, 3] = settings[CENTRE + i] + scale * (goal[i, 3] - settings[CENTRE + i])
-    if distance == 0.0:
-        near[0, 3] += settings[INNER]
-
-
-@leaf_jit
-def _from_centre(settings: Floats, goal: Floats) -> float:
-    """Distance of the goal from the centre of the shell [m], which does not overflow where its square would."""
-    x, y, z = goal[0, 3] - settings[CENTRE], goal[1, 3] - settings[CENTRE + 1], goal[2, 3] - settings[CENTRE + 2]
-    largest = max(abs(x), abs(y), abs(z))
-    if largest == 0.0:
-        return 0.0
-    x, y, z = x / largest, y / largest, z / largest
-    distance: float = largest * math.sqrt(x * x + y * y + z * z)
-    return distance
-
-
-@leaf_jit
-def _misses_by(settings: Floats, goal: Floats) -> float:
-    """A distance by which the goal certainly misses the reach [m]; 0 within tolerance, or where nothing is proven."""
-    if settings[KIND] == ORIENTATION:
-        return 0.0
-    for i in range(3):
-        if settings[WEIGHTS + i] == 0.0:
-            return 0.0
-    distance = _from_centre(settings, goal)
-    beyond = max(distance - settings[OUTER], settings[INNER] - distance)
-    return beyond if beyond > settings[POSITION_TOLERANCE] else 0.0

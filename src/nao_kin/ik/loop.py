@@ -9,28 +9,30 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.arrays import positive
 from nao_kin.chain import into_limits
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim
+from nao_kin.ik.geometric import CCD, sweep, sweep_memory
 from nao_kin.ik.measure import errors
+from nao_kin.ik.orientation import ROTATION_VECTOR, recast_rows
 from nao_kin.ik.problem import Problem, Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.rules import update
 from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
+from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.motion import packed_joints, place
+from nao_kin.tolerances import Tolerances
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import pinocchio as pin
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
     from nao_kin.ik.target import Target
-    from nao_kin.tolerances import Tolerances
 
-    UpdateRule = Callable[[Floats, Floats, Floats, Floats, Floats], None]
-
-__all__ = ["POLISHED", "REACHED", "Budget", "run_reference"]
+__all__ = ["PATIENCE_ONCE_REACHED", "POLISHED", "REACHED", "Budget", "Update", "require_options", "run_reference"]
 
 
 REACHED: Final = 0.99
@@ -40,6 +42,32 @@ when the judge measures again with another forward kinematics."""
 POLISHED: Final = 1e-3
 """Error in units of its tolerance at which a search ends at once; until then it goes on while the error falls. One
 more step is cheap, and near a target Newton's convergence makes it a thousandfold gain."""
+
+
+PATIENCE_ONCE_REACHED: Final = 5
+"""Iterations without halving the error after which polishing ends, however patient the search was until then."""
+
+
+@dataclass(frozen=True, slots=True)
+class Update:
+    """A method as the loops run it.
+
+    Attributes:
+        rule: Code of the update rule, see `nao_kin.ik.rules`.
+        parameters: Its parameters, in its order.
+        orientation_error: Form of the orientation error that it sees, see `nao_kin.ik.orientation`.
+    """
+
+    rule: int
+    parameters: tuple[float, ...]
+    orientation_error: int = ROTATION_VECTOR
+
+    def proposals(self, J: Floats, e: Floats) -> Floats:
+        """The rule's proposals (1 or 2, n) for the Jacobian J (m, n) and the error e (m,), see `nao_kin.ik.rules`."""
+        m, n = J.shape
+        steps, parameters = np.empty((2, n)), np.array(self.parameters, dtype=np.float64)
+        count = update(self.rule, np.array(J, order="C"), e, parameters, np.empty((m, m)), np.empty(m), steps)
+        return steps[:count]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +94,24 @@ class Budget:
             value = getattr(self, name)
             if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
                 raise InvalidInputError(f"budget, {name}", f"an integer from {least} to {most}", repr(value)[:40])
-        if not isinstance(self.largest_step, (int, float)) or not 0.0 < self.largest_step < math.inf:
-            raise InvalidInputError("budget, largest_step", "a finite number > 0", repr(self.largest_step))
+        positive(self.largest_step, "budget, largest_step")
 
 
+def require_options(budget: object, tolerances: object) -> None:
+    """Does nothing for a budget, or None, and tolerances.
+
+    Raises:
+        InvalidInputError: Something else.
+    """
+    if budget is not None and not isinstance(budget, Budget):
+        raise InvalidInputError("budget", "a nao_kin.Budget, or None for the method's own", repr(budget)[:60])
+    if not isinstance(tolerances, Tolerances):
+        raise InvalidInputError("tolerances", "nao_kin.Tolerances", repr(tolerances)[:60])
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a huge error's square is infinite; the loop copes with that
 def run_reference(
-    problem: Problem, rule: UpdateRule, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool = False
+    problem: Problem, method: Update, q0: Floats, budget: Budget, rng: np.random.Generator, keep_trace: bool = False
 ) -> Run:
     """Runs starts until one reaches the target or the budget is spent, and returns the best joints found.
 
@@ -81,11 +121,11 @@ def run_reference(
     start = into_limits(problem.chain, q0)
     moved = not np.array_equal(start, q0)
     misses_by, goal = _reachable(problem)
-    search = _Search(problem.chain, goal, problem.tolerances, rule, budget, keep_trace)
+    starts = make_starts(problem.chain, rng)
+    search = _Search(problem.chain, goal, problem.tolerances, method, budget, starts.closeness, keep_trace)
     ended = search.descend(start)
     if ended is not Status.SOLVED and not misses_by:
-        further = nearest_first(make_starts(problem.chain, rng), goal)
-        for q in itertools.islice(further, budget.restarts):
+        for q in itertools.islice(nearest_first(starts, goal), budget.restarts):
             again = search.descend(q)
             # One start that was still getting closer is worth a word: a larger budget may help.
             ended = Status.BUDGET_SPENT if again is Status.STALLED and ended is Status.BUDGET_SPENT else again
@@ -122,8 +162,9 @@ class _Search:
     chain: Chain
     target: Target
     tolerances: Tolerances
-    rule: UpdateRule
+    method: Update
     budget: Budget
+    closeness: float
     keep_trace: bool
     best_q: Floats = field(default_factory=lambda: np.empty(0))
     best_merit: float = math.inf
@@ -151,35 +192,55 @@ class _Search:
             previous, waited = merit, waited + 1
             if merit < 0.5 * halved:
                 halved, waited = merit, 0
-            if waited >= self.budget.patience:
+            if waited >= (min(self.budget.patience, PATIENCE_ONCE_REACHED) if reached else self.budget.patience):
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
-            step = self._step(q, e, tip)
-            if not np.isfinite(step).all():
-                return Status.NOT_FINITE
-            q = into_limits(self.chain, q + step)
+            if self.method.rule >= CCD:
+                q = self._swept(q)
+            else:
+                step = self._step(q, e, tip)
+                if not np.isfinite(step).all():
+                    return Status.NOT_FINITE
+                q = into_limits(self.chain, q + step)
             self.iterations += 1
         return Status.SOLVED if reached else Status.BUDGET_SPENT
 
     def _step(self, q: Floats, e: Floats, tip: Floats) -> Floats:
         full = np.ascontiguousarray(self.chain.jacobian(q))
+        recast_rows(self.method.orientation_error, self.goal, tip, e, full)
         aim.shape_rows(self.kind, self.goal, self.weights, tip, e, full)
         J, e = full[self.bound], e[self.bound]
         uphill = J.T @ e
         held = ((q <= self.chain.lower) & (uphill < 0.0)) | ((q >= self.chain.upper) & (uphill > 0.0))
-        m, step = len(e), np.empty_like(q)
-        self.rule(np.ascontiguousarray(np.where(held, 0.0, J)), e, np.empty((m, m)), np.empty(m), step)
+        proposed = self.method.proposals(np.where(held, 0.0, J), e)
+        return min(map(self._bounded, proposed), key=lambda step: self._merit_after(q, step, len(proposed)))
+
+    def _swept(self, q: Floats) -> Floats:
+        """The joints after a sweep; sweeps work on the flat form of the chain, here as in the compiled loop."""
+        joints, limits = packed_joints(self.chain.joint_path), np.array([self.chain.lower, self.chain.upper])
+        coupled = packed_rules(self.chain.limit_rules, self.chain.joint_names)
+        axes, tip, swept = np.empty((len(joints) - 1, 6)), np.empty(12), q.copy()
+        place(joints, swept, axes, tip)
+        memory = np.empty(sweep_memory(joints))
+        sweep(self.method.rule, joints, limits, coupled, self.kind, self.goal, self.closeness, swept, axes, tip, memory)
+        return swept
+
+    def _bounded(self, step: Floats) -> Floats:
         largest = float(np.abs(step).max())
         return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
 
+    def _merit_after(self, q: Floats, step: Floats, proposed: int) -> float:
+        """How good the joints after a step are; needed only where there is a choice."""
+        if proposed == 1 or not np.isfinite(step).all():
+            return math.inf
+        T_base_tip, e = self.chain.pose(into_limits(self.chain, q + step)), np.empty(6)
+        aim.raw_error(self.kind, self.goal, np.concatenate([T_base_tip.rotation.ravel(), T_base_tip.translation]), e)
+        return self._merit(e)
+
     def _note(self, q: Floats, e: Floats, T_base_tip: pin.SE3) -> tuple[float, bool]:
         """The larger weighted error in units of its tolerance, and whether the target is reached."""
-        weighted = self.weights * e
-        merit = max(
-            _ratio(float(np.linalg.norm(weighted[:3])), self.tolerances.position),
-            _ratio(float(np.linalg.norm(weighted[3:])), self.tolerances.rotation),
-        )
+        merit = self._merit(e)
         if merit < self.best_merit or not self.best_q.size:
             self.best_q, self.best_merit = q, merit
         position, rotation = errors(
@@ -189,6 +250,13 @@ class _Search:
             self.rows.append((q, position, rotation, self.starts - 1))
         far = position > REACHED * self.tolerances.position or rotation > REACHED * self.tolerances.rotation
         return merit, not far
+
+    def _merit(self, e: Floats) -> float:
+        weighted = self.weights * e
+        return max(
+            _ratio(float(np.linalg.norm(weighted[:3])), self.tolerances.position),
+            _ratio(float(np.linalg.norm(weighted[3:])), self.tolerances.rotation),
+        )
 
     def trace(self) -> Trace:
         """What was iterated, all starts in one."""

@@ -1,69 +1,39 @@
-"""The methods by name, and `solve`."""
+"""`solve`: a target, a method of the table, and a result that was measured again."""
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 import pinocchio as pin
 
+from nao_kin.arrays import positive
 from nao_kin.chain import Chain, configuration, neutral
-from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.ik import descent, rules
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik import layout
+from nao_kin.ik.catalogue import METHODS, Method, method_named
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
-from nao_kin.ik.loop import Budget, run_reference
+from nao_kin.ik.loop import Budget, Update, require_options, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
-from nao_kin.ik.target import KINDS, Target, TargetKind, TargetLike
+from nao_kin.ik.scales import chain_scales
+from nao_kin.ik.target import KINDS, Target, TargetLike
+from nao_kin.ik.tree import solve_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
+from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.loop import UpdateRule
+    from nao_kin.ik.tree_problem import TreeResult
 
 __all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
 
 Engine = Literal["compiled", "reference"]
-
-
-@dataclass(frozen=True, slots=True)
-class Method:
-    """One row of the table of methods.
-
-    Attributes:
-        name: What `solve` takes.
-        rule: The update rule, called by the reference loop.
-        code: The same rule's number in compiled code.
-        targets: Kinds of target it handles.
-        reference: Where it comes from.
-        choose_it: When to.
-    """
-
-    name: str
-    rule: UpdateRule
-    code: int
-    targets: tuple[TargetKind, ...]
-    reference: str
-    choose_it: str
-
-
-METHODS: Final[dict[str, Method]] = {
-    method.name: method
-    for method in (
-        Method(
-            name="lm",
-            rule=rules.levenberg_marquardt,
-            code=rules.LEVENBERG_MARQUARDT,
-            targets=("pose", "position", "pointing", "orientation"),
-            reference="Chan and Lawrence 1988, error-damped least squares",
-            choose_it="by default: quadratic convergence near the target, bounded steps at singularities",
-        ),
-    )
-}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -87,6 +57,7 @@ _FLOAT64 = np.dtype(np.float64)
 _IDENTITY, _PLACE = np.eye(4), (slice(0, 3), 3)
 
 
+@overload
 def solve(
     chain: Chain,
     target: TargetLike,
@@ -98,11 +69,44 @@ def solve(
     seed: int = 0,
     engine: Engine = "compiled",
     trace: bool = False,
-) -> IKResult:
+    parameters: Mapping[str, float] | None = None,
+    jump: float | None = None,
+) -> IKResult: ...
+
+
+@overload
+def solve(
+    chain: Tree,
+    target: Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+) -> TreeResult: ...
+
+
+def solve(
+    chain: Chain | Tree,
+    target: TargetLike | Mapping[str, TargetLike],
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    *,
+    method: str = "lm",
+    tolerances: Tolerances = TOLERANCES,
+    budget: Budget | None = None,
+    seed: int = 0,
+    engine: Engine = "compiled",
+    trace: bool = False,
+    parameters: Mapping[str, float] | None = None,
+    jump: float | None = None,
+) -> IKResult | TreeResult:
     """Joints that bring the tip to a target, measured again before they are returned.
 
     Args:
-        chain: The chain.
+        chain: The chain; or a tree, with targets by tip name, which is `nao_kin.solve_tree` with its usual options.
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
         q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
             inside and the result says so. By default all zeros, moved inside.
@@ -113,14 +117,25 @@ def solve(
         engine: ``"compiled"``, or ``"reference"`` for the same iteration in Python on the chain's own forward
             kinematics and frame Jacobian.
         trace: Keep every iterate in the result.
+        parameters: What to tune the method with, by the names in its row of `METHODS`; the others keep their defaults.
+        jump: Largest move of a joint from the start to the solution [rad or m]; one that needs more is
+            `Status.JUMPED`. No limit unless given.
 
     Returns:
         A result whether solved or not: ask ``result.solved`` and read ``result.status``.
 
     Raises:
         InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
-        UnknownNameError: No such method, or the start names a joint that does not exist; carries near matches.
+        UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
+            matches.
     """
+    if isinstance(chain, Tree):
+        if engine != "compiled":
+            raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
+        if jump is not None:
+            raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
+        options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
+        return solve_tree(chain, cast("Any", target), q0, trace=trace, parameters=parameters, **options)
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
         wanted = Target("pose", target.copy())
@@ -135,46 +150,68 @@ def solve(
     problem = Problem(chain, wanted, tolerances)
     if engine != "compiled":
         problem = Problem(chain, Target.of(target), tolerances)
-        return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine))
-    ready = prepared(problem, method, budget, seed)
+        return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine, parameters, jump))
+    ready = prepared(problem, method, budget, seed, parameters)
     start = ready.neutral if q0 is None else start_of(chain, q0)
+    allowed = math.inf if jump is None else positive(jump, "jump", "[rad or m]", endless=True)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
-    if trace and outcome[descent.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
+    if trace and outcome[layout.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
         outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
-        return judge(problem, run_of(outcome, KINDS[wanted.kind], rows))
+        run = run_of(outcome, KINDS[wanted.kind], rows)
     except InvalidInputError:
         Target.of(target)  # says it better, if it is the target that makes no sense
         raise
+    if jump is not None:
+        run.start, run.jump = start.copy(), allowed  # the caller may go on with theirs
+    return judge(problem, run)
 
 
-def prepared(problem: Problem, method: str, budget: Budget | None, seed: int) -> Prepared:
+def prepared(
+    problem: Problem, method: str, budget: Budget | None, seed: int, parameters: Mapping[str, float] | None = None
+) -> Prepared:
     """What solves of this kind share, made once for each set of options.
 
     Raises:
-        InvalidInputError: Not a chain, a bad seed, or a target the method cannot do.
-        UnknownNameError: No such method; carries near matches.
+        InvalidInputError: Not a chain, a bad seed or parameter, or a target the method cannot do.
+        UnknownNameError: No such method or parameter; carries near matches.
     """
     target, tolerances = problem.target, problem.tolerances
     if type(seed) is not int:
         seed = _integer(seed)
     # The usual options make a key that costs little to compare.
-    usual = tolerances is TOLERANCES and budget is None and seed == 0
-    key = (method, target.kind, target.weights, None if usual else (tolerances, budget, seed))
+    usual = tolerances is TOLERANCES and budget is None and seed == 0 and not parameters
+    options = None if usual else (tolerances, budget, seed, _told_apart(parameters or {}))
+    key = (method, target.kind, target.weights, options)
     try:
         return _PREPARED[problem.chain][key]
     except (KeyError, TypeError):
-        chosen = _checked(problem, method, seed)
+        chosen = _checked(problem, method, seed, budget)
     kept = _PREPARED.setdefault(problem.chain, {})
     if len(kept) >= _KEPT:
         kept.clear()
     tables = tables_of(problem.chain, seed)
+    update = _update(problem, chosen, tables, parameters)
     settings = settings_of(
-        tables, KINDS[target.kind], chosen.code, budget or Budget(), tolerances, weights=target.weights
+        tables,
+        KINDS[target.kind],
+        update.rule,
+        budget or chosen.budget,
+        tolerances,
+        weights=target.weights,
+        parameters=update.parameters,
+        orientation_error=update.orientation_error,
     )
     ready = kept[key] = Prepared(tables, settings, neutral(problem.chain))
     return ready
+
+
+def _told_apart(parameters: object) -> object:
+    """What tells parameters apart that are not yet checked: with their types, as True equals 1.0 and is no number."""
+    if not isinstance(parameters, Mapping):
+        return parameters
+    return tuple((name, type(value), value) for name, value in parameters.items())
 
 
 def start_of(chain: Chain, q0: ArrayLike | Mapping[str, float]) -> Floats:
@@ -190,27 +227,45 @@ def start_of(chain: Chain, q0: ArrayLike | Mapping[str, float]) -> Floats:
 
 
 def _run_in_python(
-    problem: Problem, q0: Any, method: str, budget: Budget | None, seed: int, trace: bool, engine: str
+    problem: Problem,
+    q0: Any,
+    method: str,
+    budget: Budget | None,
+    seed: int,
+    trace: bool,
+    engine: str,
+    parameters: Mapping[str, float] | None,
+    jump: float | None,
 ) -> Run:
     if engine != "reference":
         raise InvalidInputError("engine", "'compiled' or 'reference'", repr(engine))
-    chosen, chain = _checked(problem, method, seed), problem.chain
+    chosen, chain = _checked(problem, method, seed, budget), problem.chain
     start = neutral(chain) if q0 is None else configuration(chain, start_of(chain, q0))
-    return run_reference(problem, chosen.rule, start, budget or Budget(), np.random.default_rng(seed), trace)
+    update = _update(problem, chosen, tables_of(chain, seed), parameters)
+    run = run_reference(problem, update, start, budget or chosen.budget, np.random.default_rng(seed), trace)
+    if jump is not None:
+        run.start, run.jump = start, positive(jump, "jump", "[rad or m]", endless=True)
+    return run
 
 
-def _checked(problem: Problem, method: str, seed: int) -> Method:
+def _update(problem: Problem, method: Method, tables: Tables, parameters: Mapping[str, float] | None) -> Update:
+    """The method with its parameters, those that depend on the chain from its stored configurations."""
+    chain = problem.chain
+    scales = chain_scales(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None
+    return Update(method.code, method.tuned(parameters or {}, scales), method.orientation_error)
+
+
+def _checked(problem: Problem, method: str, seed: int, budget: Budget | None) -> Method:
     if not hasattr(problem.chain, "joint_path"):
         expected = "a chain, as robot.chain('left_arm') gives one"
         raise InvalidInputError("chain", expected, f"a {type(problem.chain).__name__}")
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
     if _integer(seed) < 0:
         raise InvalidInputError("seed", "an integer ≥ 0", repr(seed))
-    chosen, kind = METHODS[method], problem.target.kind
-    if kind not in chosen.targets:
-        expected = f"a {' or '.join(chosen.targets)} target, which is all that method {method!r} handles"
-        raise InvalidInputError("target", expected, f"a {kind} target")
+    require_options(budget, problem.tolerances)
+    chosen = method_named(method)
+    refused = chosen.refusal(problem.chain, problem.target)
+    if refused is not None:
+        raise refused
     return chosen
 
 

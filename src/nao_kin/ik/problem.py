@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NoReturn
 
@@ -33,15 +34,17 @@ class Status(enum.Enum):
     BUDGET_SPENT = "The iteration budget ran out while the error was still falling."
     OUT_OF_REACH = "The target lies where the lengths of the links keep the tip from ever being."
     OUTSIDE_LIMITS = "The tip is at the target, but a joint is outside its range."
+    JUMPED = "The target is reached, but from the start a joint has to move by more than allowed."
     NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
 
 
 # The judge runs after every solve; looking a member up in its class takes as long as a joint's arithmetic.
-_SOLVED, _STALLED, _OUTSIDE_LIMITS, _NOT_FINITE = (
+_SOLVED, _STALLED, _OUTSIDE_LIMITS, _NOT_FINITE, _JUMPED = (
     Status.SOLVED,
     Status.STALLED,
     Status.OUTSIDE_LIMITS,
     Status.NOT_FINITE,
+    Status.JUMPED,
 )
 
 
@@ -94,6 +97,8 @@ class Run:
         misses_by: Where the target is proven out of reach, a lower bound of the distance it misses by [m].
         branch: Label of the closed-form branch; empty for iterative methods.
         trace: The iterates, where they were asked for.
+        start: The caller's start (n,), where jumps are of interest.
+        jump: Largest move of a joint from there [rad or m].
     """
 
     q: Floats
@@ -104,6 +109,8 @@ class Run:
     misses_by: float = 0.0
     branch: str = ""
     trace: Trace | None = None
+    start: Floats | None = None
+    jump: float = math.inf
 
 
 @dataclass(eq=False, slots=True)
@@ -160,6 +167,10 @@ class IKResult:
         errors += [] if self.rotation_error is None else [f"rotation error {self.rotation_error:.3g} rad"]
         parts = [self.status.value, ", ".join(errors).capitalize()]
         parts[-1] += f" after {_count(self.run.iterations, 'iteration')} from {_count(self.run.starts, 'start')}."
+        if self.run.start is not None and self.status is Status.JUMPED:
+            moves = np.abs(self.q - self.run.start)
+            joint, move = self.problem.chain.joint_names[int(moves.argmax())], float(moves.max())
+            parts.append(f"{joint} would move by {move:.3g}, more than {self.run.jump:g}.")
         if self.status is Status.OUT_OF_REACH:
             parts.append(f"It misses by at least {self.run.misses_by:.3g} m.")
         parts += [f"{outside}." for outside in self.outside]
@@ -195,7 +206,9 @@ def judge(problem: Problem, run: Run) -> IKResult:
     reached = not (position > tolerances.position or rotation > tolerances.rotation)
     if reached and ended is not _NOT_FINITE:
         ended = _OUTSIDE_LIMITS if outside else _SOLVED
-    elif ended is _SOLVED or ended is _OUTSIDE_LIMITS:
+        if ended is _SOLVED and run.start is not None and np.abs(q - run.start).max() > run.jump:
+            ended = _JUMPED
+    elif ended is _SOLVED or ended is _OUTSIDE_LIMITS or ended is _JUMPED:
         ended = _STALLED  # a claim that the measurement does not confirm: a solver that stopped short of it
     q.flags.writeable = False
     far = position if position == position else None  # NaN becomes None

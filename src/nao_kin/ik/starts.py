@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.target import Target
 
-__all__ = ["STORED", "Starts", "make_starts", "nearest_first"]
+__all__ = ["STORED", "Starts", "distances", "make_starts", "nearest_first", "starts_at"]
 
 STORED: Final = 256
 """How many. More of them save few iterations and take longer to look through."""
@@ -46,8 +46,12 @@ class Starts:
 
 def make_starts(chain: Chain, rng: np.random.Generator, count: int = STORED) -> Starts:
     """`count` random configurations inside the limits, and where the tip is at each."""
-    Q = random_configurations(chain, count, rng)
-    poses = chain.poses(Q)
+    return starts_at(chain, random_configurations(chain, count, rng))
+
+
+def starts_at(chain: Chain, Q: Floats) -> Starts:
+    """Given configurations (K, n), and where the tip is at each."""
+    poses, count = chain.poses(Q), len(Q)
     tips = poses[:, :3, 3]
     scatter = float(((tips - tips.mean(axis=0)) ** 2).sum(axis=1).mean())
     table = np.hstack([Q, poses[:, :3, :3].reshape(count, 9), tips])
@@ -57,9 +61,14 @@ def make_starts(chain: Chain, rng: np.random.Generator, count: int = STORED) -> 
 
 def nearest_first(starts: Starts, target: Target) -> Iterator[Floats]:
     """The configurations, those first whose tip is nearest to the target."""
+    return iter(starts.q[np.argsort(distances(starts, target), kind="stable")])
+
+
+def distances(starts: Starts, target: Target) -> Floats:
+    """How far the tip is from the target at each configuration (K,), position and orientation in one number."""
     goal, distance = target.goal, np.zeros(len(starts.table))
     if target.kind != "orientation":
         distance += starts.closeness * ((starts.table[:, -3:] - goal[:3, 3]) ** 2).sum(axis=1)
     if target.kind in ("pose", "orientation"):
         distance += ((starts.table[:, -12:-3] - goal[:3, :3].ravel()) ** 2).sum(axis=1)
-    return iter(starts.q[np.argsort(distance, kind="stable")])
+    return distance

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import LimitRule
 
-__all__ = ["hold", "move_inside", "packed_rules"]
+__all__ = ["column_range", "decides", "hold", "move_inside", "packed_rules"]
 
 
 def packed_rules(rules: Sequence[LimitRule], joint_names: Sequence[str]) -> Floats:
@@ -53,6 +53,31 @@ def move_inside(q: Floats, limits: Floats, coupled: Floats) -> bool:
         q[i] = inside
         first = end
     return moved
+
+
+@leaf_jit
+def column_range(limits: Floats, coupled: Floats, q: Floats, i: int) -> tuple[float, float]:
+    """Range of column i, its own cut down to what the other columns of q (n,) leave it."""
+    lower, upper = limits[0, i], limits[1, i]
+    first = 0
+    while first < coupled.shape[0]:
+        end = first + 1
+        while end < coupled.shape[0] and coupled[end, 0] == coupled[first, 0]:
+            end += 1
+        if int(coupled[first, 1]) == i:
+            least, greatest = _coupled_range(coupled, first, end, q[int(coupled[first, 2])])
+            lower, upper = max(lower, least), min(upper, greatest)
+        first = end
+    return min(lower, upper), upper
+
+
+@leaf_jit
+def decides(coupled: Floats, i: int) -> bool:
+    """Whether the range of another column hangs on column i."""
+    rows = 0
+    for row in range(coupled.shape[0]):
+        rows += coupled[row, 2] == i
+    return rows > 0
 
 
 @leaf_jit

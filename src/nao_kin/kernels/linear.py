@@ -6,7 +6,8 @@ the loops.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Final
 
 from nao_kin.kernels.compiling import leaf_jit
 
@@ -16,10 +17,15 @@ if TYPE_CHECKING:
 __all__ = [
     "add_to_diagonal",
     "dot",
+    "orthogonal_rows",
     "solve_positive",
     "times_own_transpose",
     "transpose_times",
 ]
+
+_SWEEPS: Final = 40  # quadratic convergence needs less than ten; more would be a NaN
+_ORTHOGONAL: Final = 1e-15  # cosine of the angle between two rows that count as perpendicular
+_NOTHING: Final = 1e-30  # squared length of a row, next to the whole, that is rounding and points anywhere
 
 
 @leaf_jit
@@ -110,3 +116,43 @@ def _transpose_times(J: Floats, y: Floats, x: Floats, m: int) -> None:
         for i in range(m):
             total += J[i, k] * y[i]
         x[k] = total
+
+
+@leaf_jit
+def orthogonal_rows(J: Floats, U: Floats) -> None:
+    """Singular value decomposition without allocation: turns J (m, n) in place into W = Uᵀ J with perpendicular rows.
+
+    Then J = U W, U is orthogonal (m, m), the length of row i of W is the singular value σ_i, and the row itself is
+    σ_i v_iᵀ. The order is none in particular. Rows of length 0 stand for a missing rank.
+
+    Source: M. R. Hestenes, "Inversion of matrices by biorthogonalization and related results", 1958 (one-sided Jacobi).
+    """
+    m, whole = J.shape[0], 0.0
+    for i in range(m):
+        whole += dot(J[i], J[i])
+        for j in range(m):
+            U[i, j] = 1.0 if i == j else 0.0
+    for _ in range(_SWEEPS):
+        turned = False
+        for i in range(m - 1):
+            for j in range(i + 1, m):
+                turned = _make_perpendicular(J, U, i, j, _NOTHING * whole) or turned
+        if not turned:
+            return
+
+
+@leaf_jit
+def _make_perpendicular(W: Floats, U: Floats, i: int, j: int, nothing: float) -> bool:
+    """Turns rows i and j of W, and columns i and j of U with them, until the rows are perpendicular; whether it did."""
+    a, b, c = dot(W[i], W[i]), dot(W[j], W[j]), dot(W[i], W[j])
+    if min(a, b) <= nothing or not abs(c) > _ORTHOGONAL * math.sqrt(a) * math.sqrt(b):
+        return False
+    half = (b - a) / (2.0 * c)
+    tangent = math.copysign(1.0, half) / (abs(half) + math.sqrt(1.0 + half * half))
+    cosine = 1.0 / math.sqrt(1.0 + tangent * tangent)
+    sine = cosine * tangent
+    for k in range(W.shape[1]):
+        W[i, k], W[j, k] = cosine * W[i, k] - sine * W[j, k], sine * W[i, k] + cosine * W[j, k]
+    for k in range(U.shape[0]):
+        U[k, i], U[k, j] = cosine * U[k, i] - sine * U[k, j], sine * U[k, i] + cosine * U[k, j]
+    return True

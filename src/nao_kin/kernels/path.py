@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
 
-__all__ = ["JointPath", "PathJoint", "joint_path"]
+__all__ = ["JointPath", "PathJoint", "held", "joint_path"]
 
 
 class JointPath(NamedTuple):
@@ -96,6 +96,58 @@ def joint_path(joints: Iterable[PathJoint], tool: Floats, lower: Floats, upper: 
         lower=np.array(lower, dtype=np.float64),
         upper=np.array(upper, dtype=np.float64),
     )
+
+
+def held(path: JointPath, values: Mapping[int, float]) -> JointPath:
+    """The path with some columns of q held at a value [rad or m]; the other columns move up.
+
+    Raises:
+        ValueError: No column is left.
+    """
+    kept = [column for column in range(len(path.lower)) if column not in values]
+    number = {column: i for i, column in enumerate(kept)}
+    moving = [k for k, column in enumerate(path.columns.tolist()) if column in number]
+    if not moving:
+        raise ValueError(values)
+    before, placements = np.eye(4), []
+    for k, column in enumerate(path.columns.tolist()):
+        here = before @ _homogeneous(path.rotations[k], path.translations[k])
+        if column in number:
+            placements.append(here)
+            before = np.eye(4)
+        else:
+            value = path.multipliers[k] * values[column] + path.offsets[k]
+            before = here @ _moved(value, slides=bool(path.prismatic[k]))
+    tool = before @ _homogeneous(path.tool_rotation, path.tool_translation)
+    return JointPath(
+        rotations=np.ascontiguousarray([P[:3, :3] for P in placements]),
+        translations=np.ascontiguousarray([P[:3, 3] for P in placements]),
+        tool_rotation=np.ascontiguousarray(tool[:3, :3]),
+        tool_translation=np.ascontiguousarray(tool[:3, 3]),
+        prismatic=path.prismatic[moving],
+        columns=np.array([number[column] for column in path.columns[moving].tolist()], dtype=np.int64),
+        multipliers=path.multipliers[moving],
+        offsets=path.offsets[moving],
+        lower=path.lower[kept],
+        upper=path.upper[kept],
+    )
+
+
+def _homogeneous(R: Floats, t: Floats) -> Floats:
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T
+
+
+def _moved(value: float, *, slides: bool) -> Floats:
+    """Trans_z(value) or Rot_z(value), (4, 4)."""
+    T = np.eye(4)
+    if slides:
+        T[2, 3] = value
+    else:
+        c, s = np.cos(value), np.sin(value)
+        T[:2, :2] = [[c, -s], [s, c]]
+    return T
 
 
 def _z_to(axis: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Sine and cosine for compiled loops."""
+"""Sine and cosine for compiled loops, and where a cosine and a sine add up to something."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from nao_kin.kernels.compiling import jit
 
-__all__ = ["FAR", "near_sine_cosine", "sine_cosine"]
+__all__ = ["FAR", "circle_roots", "near_sine_cosine", "sine_cosine"]
 
 # π/2 in three parts; the first two have 33 bits, so that their products with whole numbers below 2²⁰ are exact.
 _HALF_PI: Final = (
@@ -49,3 +49,18 @@ def near_sine_cosine(v: float) -> tuple[float, float]:
     swap = k != 2.0 * half
     sign = 1.0 - 2.0 * (half - 2.0 * np.floor(0.5 * half))
     return sign * (c if swap else s), sign * (-s if swap else c)
+
+
+@jit
+def circle_roots(a: float, b: float, c: float, slack: float) -> tuple[int, float, float, float, float]:
+    """The angles with a cos x + b sin x = c: how many, and cosine and sine of the greater and of the smaller one.
+
+    They are atan2(b, a) ± arccos(c / hypot(a, b)), which is never computed. Where |c| is beyond hypot(a, b) by no more
+    than `slack`, the one angle that comes nearest counts as a root. Both are written always; a and b are not both 0.
+    """
+    most = math.sqrt(a * a + b * b)
+    if abs(c) - most > slack:
+        return 0, 1.0, 0.0, 1.0, 0.0
+    a, b, c = a / most, b / most, max(-1.0, min(1.0, c / most))
+    w = math.sqrt((1.0 - c) * (1.0 + c))
+    return 1 if w == 0.0 else 2, a * c - b * w, b * c + a * w, a * c + b * w, b * c - a * w

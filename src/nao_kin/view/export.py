@@ -11,15 +11,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.view.overlay import comparison_scene
 from nao_kin.view.page import page
 from nao_kin.view.scene import robot_scene
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
+    from nao_kin.crosscheck import Comparison
     from nao_kin.robot import Robot
+    from nao_kin.view.scene import Scene
 
-__all__ = ["InlinePage", "export_html", "show"]
+__all__ = ["InlinePage", "export_comparison", "export_html", "show"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +69,25 @@ def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str
         InvalidInputError: A value of the posture is not a finite number, or `path` is a directory or a device.
         OSError: The file cannot be written.
     """
-    target = Path(path)
-    if target.exists() and not target.is_file():
-        kind = "directory" if target.is_dir() else "special file"
-        raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
-    _replace(target, page(robot_scene(robot, posture)).encode("utf-8"))
-    return target
+    return _written(path, lambda: robot_scene(robot, posture))
+
+
+def export_comparison(path: str | os.PathLike[str], found: Comparison, *, explain: bool = False) -> Path:
+    """Write a page that shows both chains of a comparison where their tips are farthest apart.
+
+    Args:
+        path: Where to write; an existing file is replaced.
+        found: What `nao_kin.compare` returned.
+        explain: Whether the page says what accounts for the disagreement, which may have to be searched first.
+
+    Returns:
+        The path written to.
+
+    Raises:
+        InvalidInputError: `path` is a directory or a device.
+        OSError: The file cannot be written.
+    """
+    return _written(path, lambda: comparison_scene(found, explain=explain))
 
 
 def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int = 480) -> InlinePage:
@@ -90,6 +106,15 @@ def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int =
         raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
     scene = robot_scene(robot, posture)
     return InlinePage(page(scene), scene.title, int(height))
+
+
+def _written(path: str | os.PathLike[str], scene: Callable[[], Scene]) -> Path:
+    target = Path(path)
+    if target.exists() and not target.is_file():
+        kind = "directory" if target.is_dir() else "special file"
+        raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
+    _replace(target, page(scene()).encode("utf-8"))
+    return target
 
 
 def _replace(target: Path, content: bytes) -> None:

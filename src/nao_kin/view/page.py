@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from nao_kin.view.record import recorded
 
 if TYPE_CHECKING:
-    from nao_kin.view.scene import JointValue, Scene
+    from nao_kin.view.scene import JointValue, Panel, Scene
 
 __all__ = ["page"]
 
@@ -45,6 +45,7 @@ def page(scene: Scene) -> str:
             "version": html.escape(_version()),
             "style": _resource("page.css"),
             "source": _source(scene),
+            "panels": "\n".join(map(_text_panel, scene.panels)),
             "joints": _joint_panel(scene.joints),
             "notes": _note_panel(scene.notes),
             "data": _json_text(_packed(recorded(scene))),
@@ -91,6 +92,14 @@ def _number(value: float, digits: int) -> str:
     if float(text) == 0.0:
         text = text.lstrip("-")  # no "−0.0000"
     return text.replace("-", MINUS)
+
+
+def _text_panel(panel: Panel) -> str:
+    paragraphs = "".join(f"<p>{html.escape(line)}</p>" for line in panel.lines)
+    return (
+        f"<details{' open' if panel.open else ''}><summary>{html.escape(panel.title)}</summary>\n"
+        f'<div class="scroll text">{paragraphs}</div></details>'
+    )
 
 
 def _note_panel(notes: tuple[str, ...]) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.urdf.document import UrdfDocument
     from nao_kin.urdf.elements import JointKind
 
-__all__ = ["JointValue", "Node", "Scene", "bounds", "robot_scene", "world_poses"]
+__all__ = ["JointValue", "Node", "Panel", "Scene", "bounds", "robot_scene", "world_poses"]
 
 SHAPELESS = "The file describes no shapes: none of its links has a visual element."
 
@@ -54,6 +54,21 @@ class JointValue:
     value: float
 
 
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """Text beside the picture.
+
+    Attributes:
+        title: Its heading.
+        lines: Its paragraphs.
+        open: Whether it is unfolded at first.
+    """
+
+    title: str
+    lines: tuple[str, ...]
+    open: bool = False
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
     """Everything a page shows.
@@ -65,6 +80,7 @@ class Scene:
         source: Name of the file the robot came from, without its directory.
         sha256: Hash of that file's bytes, in hexadecimal.
         notes: What could not be shown and why, one sentence each.
+        panels: What else there is to say.
     """
 
     title: str
@@ -73,6 +89,7 @@ class Scene:
     source: str = ""
     sha256: str = ""
     notes: tuple[str, ...] = ()
+    panels: tuple[Panel, ...] = ()
 
 
 def world_poses(scene: Scene) -> Floats:

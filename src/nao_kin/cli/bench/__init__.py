@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import typer
 
+from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
+from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
+from nao_kin.cli.bench.methods import methods
+from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.startup import startup
+from nao_kin.cli.bench.tips import tips
 
 __all__ = ["bench"]
 
@@ -22,4 +27,9 @@ def root() -> None:
 bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
+bench.command()(explain)
+bench.command()(methods)
+bench.command()(practicum)
+bench.command()(closed)
 bench.command()(startup)
+bench.command()(tips)

@@ -1,54 +1,36 @@
-"""Two chains held against each other, exactly as given: how far apart, where worst, and from which joint on."""
+"""Two chains held against each other: how far apart, where worst, from which joint on, up to what, and why."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from nao_kin.arrays import Floats, frozen
 from nao_kin.chain import Chain, random_configurations
+from nao_kin.crosscheck.departure import Departure, first_departure
+from nao_kin.crosscheck.explanation import Alternative, Explanation, Step, explain
+from nao_kin.crosscheck.gauge import Gauge, find_gauge
+from nao_kin.crosscheck.invariants import AxisPair, first_pair
+from nao_kin.dh import DHChain
+from nao_kin.dh_from_chain import to_dh
 from nao_kin.errors import InvalidInputError
-from nao_kin.se3 import position_distance, rotation_angle, rotation_distance
+from nao_kin.se3 import position_distance, rotation_distance
 from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
-__all__ = ["Comparison", "Departure", "compare"]
+__all__ = ["Comparison", "compare"]
 
 
 _DEPARTURE_SAMPLES = 64  # a fault shows at almost any configuration
 
 
-@dataclass(frozen=True, slots=True)
-class Departure:
-    """The first place, from the base outwards, at which two chains move differently.
-
-    Judged by how the joints up to there *move* the tip point away from its place at q = 0, so that two conventions with
-    differently placed link frames are not told apart by those frames. The cause is at this joint or before it: in its
-    row, or in the fixed transform that leads to it. A shift along a joint's own axis moves nothing until the next joint
-    turns, so it shows there.
-
-    Attributes:
-        joint: Name of the first physical joint that moves the tip differently, in the second chain; None if all joints
-            move alike and only where the tip sits differs, or if the chains have different numbers of physical joints.
-        number: Its place on the path, counted from 1; one more than there are joints for the ends; 0 if not localised.
-        position: Largest distance there [m].
-        rotation: Largest angle there [rad].
-    """
-
-    joint: str | None
-    number: int
-    position: float
-    rotation: float
-
-    def __str__(self) -> str:
-        where = self.joint or ("fixed end" if self.number else "not localised")
-        return f"{where} ({self.position * 1e3:.4g} mm, {self.rotation:.4g} rad)"
-
-
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """What `compare` found.
+
+    The errors are measured at once. Gauge, first pair and explanation are worked out when they are first asked for.
 
     Attributes:
         a: The first chain, usually a table.
@@ -79,10 +61,76 @@ class Comparison:
     @property
     def agrees(self) -> bool:
         """Whether the chains are the same exactly as given."""
-        return (
-            self.max_position_error <= self.tolerances.agreement_position
-            and self.max_rotation_error <= self.tolerances.agreement_rotation
-        )
+        position, rotation = self._agreement
+        return self.max_position_error <= position and self.max_rotation_error <= rotation
+
+    @cached_property
+    def gauge(self) -> Gauge | None:
+        """Base, tool, joint signs and zero positions that make `a` the same as `b`; None if nothing of that sort does.
+
+        None as well where joints are coupled, for whose lines there is no one gauge.
+        """
+        try:
+            return find_gauge(self.a, self.b, *self._agreement)
+        except InvalidInputError:
+            return None
+
+    @cached_property
+    def first_pair(self) -> AxisPair | None:
+        """The first two joints whose lines no gauge makes equal, with their figures; None if there are none.
+
+        None as well where joints are coupled.
+        """
+        try:
+            return first_pair(self.a, self.b)
+        except InvalidInputError:
+            return None
+
+    @cached_property
+    def explanation(self) -> Explanation:
+        """Which usual errors in `a` would account for the disagreement.
+
+        The edits are those of a DH table: of `a`, or of `to_dh(a, "modified")` if it is no table.
+        """
+        note, table = "They agree exactly as given.", None
+        try:
+            table = self.a if isinstance(self.a, DHChain) else to_dh(self.a, "modified")
+        except InvalidInputError as error:
+            note = note if self.agrees else f"Not explained: {error}"
+        if self.agrees or table is None:
+            return Explanation.without_search(table, self.tolerances, note)
+        return explain(table, self.b, self.tolerances)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The edits of the first alternative, each with the error that comes back without it."""
+        return self.explanation.steps
+
+    @property
+    def alternatives(self) -> tuple[Alternative, ...]:
+        """Every equally simple set of edits that both chains' own poses confirm, the least far-fetched first."""
+        return self.explanation.alternatives
+
+    @cached_property
+    def corrected(self) -> DHChain | None:
+        """A table that agrees with `b`; None if none is known.
+
+        If not `explanation.exact`, it agrees within the digits that are printed.
+
+        That is `a` itself if it agrees; else the first alternative; else, if there is none that is exact, `a` with the
+        gauge applied.
+        """
+        explanation = self.explanation
+        if self.agrees or explanation.table is None:
+            return explanation.table
+        exact = explanation.exact and explanation.corrected is not None
+        if not exact and self.gauge is not None:
+            return self.gauge.applied(explanation.table)
+        return explanation.corrected
+
+    @property
+    def _agreement(self) -> tuple[float, float]:
+        return self.tolerances.agreement_position, self.tolerances.agreement_rotation
 
     def table(self) -> Table:
         """The findings, two columns."""
@@ -96,10 +144,24 @@ class Comparison:
             ("largest Jacobian difference, linear", f"{self.max_linear_jacobian_error:.6g} m/rad"),
             ("  angular", f"{self.max_angular_jacobian_error:.6g}"),
             ("first differ at", "nowhere" if self.first_departure is None else str(self.first_departure)),
+            *self._up_to_gauge(),
             ("configurations", str(self.samples)),
         )
         columns = (Column("quantity"), Column("value"))
         return Table(columns, rows, title=f"{self.a.name} against {self.b.name}")
+
+    def _up_to_gauge(self) -> list[tuple[str, str]]:
+        if self.agrees:
+            return []
+        if self.gauge is not None:
+            return [("the same arm up to", str(self.gauge))]
+        if (pair := self.first_pair) is None:
+            return []
+        return [
+            ("first unequal lines", " and ".join(pair.joints)),
+            ("  first chain", str(pair.a)),
+            ("  second chain", str(pair.b)),
+        ]
 
     def __repr__(self) -> str:
         verdict = "agrees" if self.agrees else f"differs from {self.first_departure}"
@@ -154,7 +216,7 @@ def compare(
         worst_rotation_q=frozen(Q[worst_r].copy()),
         max_linear_jacobian_error=float(jacobian[:3].max()),
         max_angular_jacobian_error=float(jacobian[3:].max()),
-        first_departure=_first_departure(a, b, chosen, tolerances) if apart else None,
+        first_departure=first_departure(a, b, chosen, tolerances) if apart else None,
     )
 
 
@@ -165,33 +227,3 @@ def _configurations(a: Chain, b: Chain, samples: int, rng: np.random.Generator) 
         Q[:, unlimited] = random_configurations(a, samples, rng)[:, unlimited]
     ends = [np.where(np.isfinite(end), end, 0.0) for end in (b.lower, b.upper)]
     return np.concatenate([[np.zeros(len(b.joints))], ends, Q])
-
-
-def _first_departure(a: Chain, b: Chain, Q: Floats, tolerances: Tolerances) -> Departure:
-    zero = np.zeros(len(b.joints))
-    tip = b.pose(zero).translation
-    links_a, links_b = a.link_poses(zero), b.link_poses(zero)
-    if len(links_a) != len(links_b):
-        pairs = [(a.pose(q), b.pose(q)) for q in Q]
-        position = max(position_distance(*pair) for pair in pairs)
-        return Departure(None, 0, position, max(rotation_distance(*pair) for pair in pairs))
-    moved = [(_motions(a.link_poses(q), links_a), _motions(b.link_poses(q), links_b)) for q in Q]
-    for k in range(len(links_b)):
-        position = max(float(np.linalg.norm(_apply(Ma[k], tip) - _apply(Mb[k], tip))) for Ma, Mb in moved)
-        rotation = max(rotation_angle(Ma[k, :3, :3].T @ Mb[k, :3, :3]) for Ma, Mb in moved)
-        if position > tolerances.agreement_position or rotation > tolerances.agreement_rotation:
-            return Departure(b.path_joint_names[k], k + 1, position, rotation)
-    T_a, T_b = a.pose(zero), b.pose(zero)
-    return Departure(None, len(links_b) + 1, position_distance(T_a, T_b), rotation_distance(T_a, T_b))
-
-
-def _motions(links: Floats, links_at_zero: Floats) -> Floats:
-    """The rigid motions (m, 4, 4) of the base's space that carry each link from its place at q = 0 to where it is."""
-    inverses = np.linalg.inv(links_at_zero)
-    motions: Floats = links @ inverses
-    return motions
-
-
-def _apply(T: Floats, point: Floats) -> Floats:
-    moved: Floats = T[:3, :3] @ point + T[:3, 3]
-    return moved

@@ -1,0 +1,87 @@
+"""The closed forms, one row each."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from nao_kin.analytic import (
+    hexapod,
+    hexapod_kernel,
+    leg_kernel,
+    nao_arm,
+    nao_arm_kernel,
+    nao_head,
+    nao_head_kernel,
+    nao_leg,
+)
+from nao_kin.analytic.form import ClosedForm, Request
+
+__all__ = ["FORMS"]
+
+_ARMS: Final = "Kofinas, Orfanoudakis and Lagoudakis 2013; Bischoff 2016, (3.3.0.2) ff."
+_ELBOW_YAW, _WRIST_YAW = 2, 4  # columns of an arm's q
+
+FORMS: Final = (
+    ClosedForm(
+        name="nao_head",
+        title="NAO head: yaw and pitch",
+        source="MATLAB example, eq1 to eq3",
+        joints=2,
+        requests={"pose": Request(1), "orientation": Request(1), "position": Request(2), "direction": Request(2)},
+        labels=nao_head.LABELS,
+        singularities=nao_head.SINGULARITIES,
+        recognise=nao_head.recognise,
+        solve=nao_head_kernel.solve,
+        solve_many=nao_head_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="nao_arm_h21",
+        title="NAO arm of four joints, wrist fixed",
+        source=_ARMS,
+        joints=4,
+        requests={"pose": Request(4), "position": Request(4, (_ELBOW_YAW,)), "pointing": Request(24)},
+        labels=nao_arm.LABELS,
+        singularities=nao_arm.SINGULARITIES,
+        recognise=partial(nao_arm.recognise, joints=4),
+        solve=nao_arm_kernel.solve,
+        solve_many=nao_arm_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="nao_arm_h25",
+        title="NAO arm of five joints",
+        source=_ARMS,
+        joints=5,
+        requests={"pose": Request(4), "position": Request(4, (_ELBOW_YAW, _WRIST_YAW)), "pointing": Request(8)},
+        labels=nao_arm.LABELS,
+        singularities=nao_arm.SINGULARITIES,
+        recognise=partial(nao_arm.recognise, joints=5),
+        solve=nao_arm_kernel.solve,
+        solve_many=nao_arm_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="nao_leg",
+        title="NAO leg of six joints, from torso to foot or from foot to torso",
+        source="Kofinas, Orfanoudakis and Lagoudakis 2013, the leg; derived in nao_kin.analytic.nao_leg",
+        joints=6,
+        requests={"pose": Request(leg_kernel.BRANCHES)},
+        labels=nao_leg.LABELS,
+        singularities=nao_leg.SINGULARITIES,
+        recognise=nao_leg.recognise,
+        solve=leg_kernel.solve,
+        solve_many=leg_kernel.solve_many,
+    ),
+    ClosedForm(
+        name="hexapod_leg",
+        title="hexapod leg: coxa, femur and tibia",
+        source="hexapod article, steps 3 to 5",
+        joints=3,
+        requests={"position": Request(hexapod_kernel.BRANCHES)},
+        labels=hexapod.LABELS,
+        singularities=hexapod.SINGULARITIES,
+        recognise=hexapod.recognise,
+        solve=hexapod_kernel.solve,
+        solve_many=hexapod_kernel.solve_many,
+    ),
+)
+"""In the order in which they are tried."""

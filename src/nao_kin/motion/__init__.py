@@ -1,0 +1,1 @@
+"""Moving a whole robot: what several chains do together."""
