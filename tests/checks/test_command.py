@@ -141,6 +141,7 @@ def test_a_table_that_departs_is_a_finding_at_its_joint(run: Run, tmp_path: Path
     (finding,) = json.loads(done.stdout)["findings"]
     text = JACO.read_text().split("\n")
     assert (finding["code"], finding["severity"]) == ("departs-from-table", "error")
+    assert "row 5 (joint_5): d" in finding["hint"]
     assert '<joint name="joint_5"' in text[finding["line"] - 1]
     table.write_text(nk.document_chain("kofinas_left_arm").to_toml())
     assert run("check", NAO, "--dh", table).returncode == 0

@@ -34,6 +34,8 @@ def departures_from_table(path: str, table: str) -> Iterator[Finding]:
     robot = load(path)
     found = compare(chain, robot.chain(chain.base_name, chain.tip_name))
     hint = "Look at that joint's origin and axis, and at its row in the table."
+    if not found.agrees and found.explanation.steps:
+        hint = f"They agree after changing in the table: {'; '.join(map(str, found.explanation.steps))}."
     yield from _finding(path, "departs-from-table", found, _joint_above(robot, chain.tip_name), hint)
 
 
