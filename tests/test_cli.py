@@ -178,9 +178,10 @@ def test_robots_lists_what_loads() -> None:
 def test_check_prints_findings_and_exits_with_1(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text('<robot name="arm">\n<link name="base"/>\n<link name="base"/>\n</robot>\n')
-    text = ok("check", path, status=1)
-    assert "error[duplicate-link]" in text
-    assert "arm.urdf:3:13" in text
+    done = run("check", "arm.urdf", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "error[duplicate-link]" in done.stdout
+    assert " --> arm.urdf:3:13\n" in done.stdout
     assert "Two links bear the same name" in ok("explain", "duplicate-link")
 
 
