@@ -30,7 +30,7 @@ SECONDS = 5.0  # of processor time that one mutant may take; what else the machi
 HANG = 120.0  # without a word a process is ended
 MEMORY = 4 * 1024**3
 BATCH = 250
-COMPARED = 18  # every so many mutants, by yourdfpy too: about 500 of 20 000 that are without errors
+COMPARED = 16  # every so many mutants, by yourdfpy too: about 500 of 20 000 that are without errors
 
 
 def sources() -> list[Path]:
