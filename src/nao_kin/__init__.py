@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from nao_kin.dh_row import DHRow as DHRow
     from nao_kin.documents.chains import document_chain as document_chain
     from nao_kin.documents.chains import document_chain_names as document_chain_names
+    from nao_kin.documents.ledger import Ledger as Ledger
+    from nao_kin.documents.ledger import ledger as ledger
     from nao_kin.errors import NaoKinError as NaoKinError
     from nao_kin.ik.along import FollowResult as FollowResult
     from nao_kin.ik.along import follow as follow
@@ -65,6 +67,7 @@ _HOME = {
     "Finding": "checks.finding",
     "FollowResult": "ik.along",
     "IKResult": "ik.problem",
+    "Ledger": "documents.ledger",
     "LimitRule": "chain",
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
@@ -83,6 +86,7 @@ _HOME = {
     "document_chain_names": "documents.chains",
     "export_html": "view.export",
     "follow": "ik.along",
+    "ledger": "documents.ledger",
     "load": "robot",
     "nearest": "analytic.solutions",
     "project_to_reach": "ik.along",

@@ -10,6 +10,7 @@ from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
+from nao_kin.cli.bench.mutants import mutants
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
@@ -29,6 +30,7 @@ bench.command()(ik)
 bench.command()(edges)
 bench.command()(explain)
 bench.command()(methods)
+bench.command()(mutants)
 bench.command()(practicum)
 bench.command()(closed)
 bench.command()(startup)

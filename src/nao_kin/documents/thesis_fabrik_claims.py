@@ -1,0 +1,303 @@
+"""The claims of Bischoff 2016, section 3.4, about Algorithm 1 line by line, and (3.4.0.1)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.linalg import norm
+
+from nao_kin.documents import thesis_fabrik as forms
+from nao_kin.documents.claim import Claim, Correction, Measured
+from nao_kin.documents.sampling import deviation
+from nao_kin.ik.points import fabrik_points
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from nao_kin.arrays import Floats
+    from nao_kin.documents.claim import Check, Form
+
+__all__ = ["CLAIMS"]
+
+_COUNT, _SEED = 200, 340
+_LIMIT: Final = 1000
+_TOLERANCE: Final = 1e-6
+
+
+def _chain(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Points (n, 3) with n from 3 to 7, and their distances."""
+    p = np.cumsum(rng.normal(size=(int(rng.integers(3, 8)), 3)), axis=0)
+    return p, norm(np.diff(p, axis=0), axis=1)
+
+
+def _direction(rng: np.random.Generator) -> Floats:
+    v = rng.normal(size=3)
+    return np.asarray(v / norm(v))
+
+
+def _index_range(form: Form) -> Measured:
+    """How many distances name a point that is not there, or are missing."""
+    errors = []
+    for n in range(2, 12):
+        found, wanted = form(n), [(i + 1, i) for i in range(1, n)]
+        errors.append(float(len(set(found) ^ set(wanted))))
+    return Measured.worst(
+        errors, lambda k: f"n = {k + 2}: d_{k + 2} = |p_{k + 3} − p_{k + 2}|, and there is no p_{k + 3}"
+    )
+
+
+def _stretched(form: Form) -> Measured:
+    """The straight line from the base towards a target out of reach."""
+    rng, errors = np.random.default_rng(_SEED), list[float]()
+    for _ in range(_COUNT):
+        p, d = _chain(rng)
+        u = _direction(rng)
+        t = p[0] + u * d.sum() * rng.uniform(1.01, 3.0)
+        line = p[0] + np.outer(np.concatenate([[0.0], np.cumsum(d)]), u)
+        errors.append(deviation(form(p, d, t), line) / d.sum())
+    return Measured.worst(errors)
+
+
+def _from_tip(form: Form) -> Measured:
+    """Each point on the line from the next one's new place to its own old place, at its distance."""
+    rng, errors = np.random.default_rng(_SEED), list[float]()
+    for _ in range(_COUNT):
+        p, d = _chain(rng)
+        t = p[0] + _direction(rng) * d.sum() * rng.uniform(0.0, 1.0)
+        wanted = [t]
+        for old, length in zip(p[-2::-1], d[::-1], strict=True):
+            wanted.append(wanted[-1] + length * (old - wanted[-1]) / norm(old - wanted[-1]))
+        errors.append(deviation(form(p, d, t), np.array(wanted[::-1])) / d.sum())
+    return Measured.worst(errors)
+
+
+def _from_base(form: Form) -> Measured:
+    """The same from the base outwards, on points that forward reaching has moved."""
+    rng, errors, bases, lengths = np.random.default_rng(_SEED), list[float](), list[float](), list[float]()
+    for _ in range(_COUNT):
+        p, d = _chain(rng)
+        b, p = p[0], forms.forward(p, d, p[0] + _direction(rng) * d.sum() * rng.uniform(0.3, 0.9))
+        wanted = [b]
+        for old, length in zip(p[1:], d, strict=True):
+            wanted.append(wanted[-1] + length * (old - wanted[-1]) / norm(old - wanted[-1]))
+        found = form(p, d, b)
+        errors.append(deviation(found, np.array(wanted)) / d.sum())
+        bases.append(float(norm(found[0] - b) / d.sum()))
+        lengths.append(float(np.abs(norm(np.diff(found, axis=0), axis=1) - d).max() / d.sum()))
+    told = (
+        f"After it the base is up to {100.0 * max(bases):.3g} % of the chain's length from where it was, and a link "
+        f"up to {100.0 * max(lengths):.3g} % of that too long or short."
+    )
+    return Measured.worst(errors, found=told)
+
+
+def _inputs() -> dict[str, list[tuple[Floats, Floats]]]:
+    """Chains and targets that line 7 accepts, by what they have in common."""
+    rng = np.random.default_rng(_SEED)
+    groups: dict[str, list[tuple[Floats, Floats]]] = {"within reach": [], "too near": [], "in one line": []}
+    for _ in range(_COUNT // 2):
+        p, d = _chain(rng)
+        hole = max(0.0, 2.0 * d.max() - d.sum())
+        groups["within reach"].append((p, p[0] + _direction(rng) * rng.uniform(hole + 0.05 * d.sum(), 0.95 * d.sum())))
+    for _ in range(_COUNT // 4):
+        p = np.cumsum(rng.normal(size=(4, 3)), axis=0)
+        p[1:] += _direction(rng) * norm(np.diff(p, axis=0), axis=1).sum()  # a long first link
+        d = norm(np.diff(p, axis=0), axis=1)
+        groups["too near"].append((p, p[0] + _direction(rng) * rng.uniform(0.1, 0.9) * (2.0 * d.max() - d.sum())))
+        u = _direction(rng)
+        line = np.outer(np.cumsum([0.0, *rng.uniform(0.8, 1.2, 3)]), u)
+        groups["in one line"].append((line, u * rng.uniform(1.3, 2.2)))
+    return groups
+
+
+def _ends(run: Callable[[Floats, Floats], tuple[Floats, int]]) -> Measured:
+    """How many inputs have not ended with a finite answer that is as near as can be, after 1000 iterations."""
+    lines, bad, count = list[str](), 0, 0
+    for name, cases in _inputs().items():
+        open_ones = 0
+        for p, t in cases:
+            d = norm(np.diff(p, axis=0), axis=1)
+            nearest = max(0.0, 2.0 * float(d.max()) - float(d.sum()) - float(norm(t - p[0])))
+            found, iterations = run(p, t)
+            missed = float(norm(found[-1] - t)) - nearest
+            open_ones += not (iterations < _LIMIT and missed <= 2.0 * _TOLERANCE)
+        lines.append(f"{name}: {open_ones} of {len(cases)} do not end")
+        bad, count = bad + open_ones, count + len(cases)
+    return Measured(float(bad), count, lines[1] + ", " + lines[2], ";\n".join(lines) + ".")
+
+
+def _loop(form: Form) -> Measured:
+    """Lines 22 to 43 with the backward block corrected and the condition as given."""
+
+    def run(p: Floats, t: Floats) -> tuple[Floats, int]:
+        d, b = norm(np.diff(p, axis=0), axis=1), p[0]
+        for k in range(_LIMIT):
+            if not form(float(norm(p[-1] - t)), _TOLERANCE):
+                return p, k
+            p = forms.backward_corrected(forms.forward(p, d, t), d, b)
+        return p, _LIMIT
+
+    return _ends(run)
+
+
+def _made_right(form: Form) -> Measured:
+    return _ends(lambda p, t: form(p, t, _TOLERANCE, _LIMIT))
+
+
+def _numbers(shift: int) -> Check:
+    """Which points of the listing stay and reach, found by running it; the text's numbers may be shifted."""
+
+    def check(form: Form) -> Measured:
+        rng, errors = np.random.default_rng(_SEED), list[float]()
+        for _ in range(20):
+            p, d = _chain(rng)
+            moved = forms.backward_corrected(forms.forward(p, d, p[0] + _direction(rng)), d, p[0])
+            stays = [i + 1 for i in range(len(p)) if norm(moved[i] - p[i]) < 1e-12]
+            base, tip = form(len(p))
+            errors += [base + shift - stays[0], tip + shift - len(p)]
+        return Measured.worst(errors)
+
+    return check
+
+
+def _bend(vectors: Callable[[Floats, int], tuple[Floats, Floats]]) -> Check:
+    """A plane chain that bends by known angles at its inner points."""
+
+    def check(form: Form) -> Measured:
+        rng, errors = np.random.default_rng(_SEED), list[float]()
+        for _ in range(_COUNT):
+            bends, lengths = rng.uniform(-3.0, 3.0, 4), rng.uniform(0.2, 1.0, 5)
+            heading = np.concatenate([[0.3], 0.3 + np.cumsum(bends)])
+            steps = lengths[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+            p = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+            errors += [float(form(*vectors(p, i))) - math.cos(bends[i - 1]) for i in range(1, 5)]
+        return Measured.worst(errors)
+
+    return check
+
+
+def _lengths_of(p: Floats, i: int) -> tuple[Floats, Floats]:
+    return np.atleast_1d(norm(p[i] - p[i - 1])), np.atleast_1d(norm(p[i + 1] - p[i]))
+
+
+def _vectors_of(p: Floats, i: int) -> tuple[Floats, Floats]:
+    return p[i] - p[i - 1], p[i + 1] - p[i]
+
+
+_CHAINS: Final = "200 random chains of 3 to 7 points"
+
+CLAIMS: Final = (
+    Claim(
+        id="000:algorithm-1-distances",
+        place="Algorithm 1, line 4",
+        said="Every d_i is the distance of p_i and p_{i+1}, i from 1 to n.",
+        formula="d_i = |p_{i+1} − p_i|, i = 1, …, n",
+        latex=r"d_i = |p_{i+1} - p_i|,\ i = 1, \ldots, n",
+        printed=forms.distances,
+        check=_index_range,
+        reference="the links of a chain of n points",
+        domain="n from 2 to 11",
+        unit="distances",
+        tolerance=0.0,
+        correction=Correction(
+            forms.distances_corrected,
+            "d_i = |p_{i+1} − p_i|, i = 1, …, n − 1",
+            latex=r"d_i = |p_{i+1} - p_i|,\ i = 1, \ldots, n-1",
+            why="n points have n − 1 links; lines 7, 9, 27 and 38 use that many.",
+        ),
+    ),
+    Claim(
+        id="000:algorithm-1-unreachable",
+        place="Algorithm 1, lines 7 to 16",
+        said="A target out of reach is answered by the straight line towards it.",
+        formula="λ_i ← d_i / |t − p_i|, p_{i+1} ← (1 − λ_i) p_i + λ_i t, i = 1, …, n − 1",
+        latex=r"p_{i+1} \leftarrow (1 - \lambda_i) p_i + \lambda_i t,\ \lambda_i = d_i / |t - p_i|",
+        printed=forms.unreachable,
+        check=_stretched,
+        reference="points at the links' lengths along the line from base to target",
+        domain=f"{_CHAINS}, targets 1.01 to 3 lengths away; holds for all that line 7 rejects",
+    ),
+    Claim(
+        id="000:algorithm-1-forward",
+        place="Algorithm 1, lines 24 to 34",
+        said="Forward reaching puts the tip on the target and the others back along the lines.",
+        formula="p_n ← t; λ_i ← d_i / |p_{i+1} − p_i|,\np_i ← (1 − λ_i) p_{i+1} + λ_i p_i, i = n − 1, …, 1",
+        latex=r"p_i \leftarrow (1 - \lambda_i) p_{i+1} + \lambda_i p_i,\ \lambda_i = d_i / |p_{i+1} - p_i|",
+        printed=forms.forward,
+        check=_from_tip,
+        reference="each point at its distance from the next one, towards where it was",
+        domain=f"{_CHAINS}; holds unless a point lies where the next one comes to lie (r_i = 0)",
+    ),
+    Claim(
+        id="000:algorithm-1-backward",
+        place="Algorithm 1, lines 35 to 43 and 40 to 41 of the second block",
+        said="Backward reaching puts the base back and the others along the lines from it.",
+        formula="p_1 ← b; λ_i ← d_i / |p_{i+1} − p_i|,\np_i = (1 − λ_i) p_i + λ_i p_{i+1}, i = 1, …, n − 1",
+        latex=r"p_i = (1 - \lambda_i) p_i + \lambda_i p_{i+1}",
+        printed=forms.backward,
+        check=_from_base,
+        reference="each point at its distance from the one before, towards where it was",
+        domain=f"{_CHAINS} after forward reaching. As printed the tip never leaves the target, so that the loop ends at"
+        " once, with a chain torn apart",
+        correction=Correction(
+            forms.backward_corrected,
+            "p_{i+1} ← (1 − λ_i) p_i + λ_i p_{i+1}",
+            latex=r"p_{i+1} \leftarrow (1 - \lambda_i) p_i + \lambda_i p_{i+1}",
+            why="The point to be placed is p_{i+1}; as printed, p_i is moved off the base again.",
+        ),
+    ),
+    Claim(
+        id="000:algorithm-1-loop",
+        place="Algorithm 1, lines 6, 7 and 23",
+        said="Whatever line 7 accepts is iterated until the tip is within the tolerance.",
+        formula="while |p_n − t| > tol",
+        latex=r"\text{while } |p_n - t| > tol",
+        printed=forms.goes_on,
+        check=_loop,
+        reference="end within 1000 iterations, as near to the target as the links allow",
+        domain="200 inputs that line 7 accepts, tolerance 10⁻⁶ of a link, backward block corrected. It ends for targets"
+        " farther than the longest link less the others, off the line of a straight chain",
+        unit="inputs",
+        tolerance=0.0,
+        correction=Correction(
+            fabrik_points,
+            "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line "
+            "with the target, and bound the iterations (nao_kin.ik.points.fabrik_points)",
+            why="A long link leaves a hole about the base that line 7 does not see; on a line nothing ever leaves it.",
+            check=_made_right,
+        ),
+    ),
+    Claim(
+        id="000:3.4-base-index",
+        place="text of section 3.4 and Figure 7",
+        said="The base is p_0 and the end effector of three points p_2.",
+        formula="base p_0, end effector p_{n−1}",
+        latex=r"p_0,\ \ldots,\ p_{n-1}",
+        printed=forms.base_and_tip,
+        check=_numbers(0),
+        reference="the points of the listing that stay and that reach, p_1 and p_n",
+        domain="20 random chains",
+        unit="1",
+        tolerance=0.0,
+        conventions={"p_i of the text is p_{i+1} of the listing": _numbers(1)},
+    ),
+    Claim(
+        id="000:3.4.0.1",
+        place="equation (3.4.0.1)",
+        said="The angle of a joint out of the links beside it, for checking its limits.",
+        formula="cos θ_i = (d_i · d_{i+1}) / (|d_i| |d_{i+1}|)",
+        latex=r"\cos\theta_i = \frac{\vec d_i \cdot \vec d_{i+1}}{|\vec d_i| \cdot |\vec d_{i+1}|}",
+        printed=forms.eq_3_4_0_1,
+        check=_bend(_lengths_of),
+        reference="plane chains that bend by known angles",
+        domain="200 chains of five links; the size of the angle only, so no limits that differ in sign, and of the"
+        " NAO's arm only the elbow roll",
+        conventions={
+            "d_i is the vector from p_{i−1} to p_i, as in Figure 3, not the link's length, as the text has it": _bend(
+                _vectors_of
+            )
+        },
+    ),
+)
