@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 import os
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,3 +35,12 @@ def needs_examples() -> None:
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(20160401)
+
+
+def needs(module: str) -> Any:
+    """A module of the extra ``dev``; skip without it, except in CI, where it must be there."""
+    if importlib.util.find_spec(module) is None:
+        if os.environ.get("CI") == "true":
+            pytest.fail(f"{module} must be installed in CI")
+        pytest.skip(f"{module} is not installed")
+    return importlib.import_module(module)

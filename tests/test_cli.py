@@ -175,6 +175,16 @@ def test_robots_lists_what_loads() -> None:
     assert all(name in text for name in nk.document_chain_names())
 
 
+def test_check_prints_findings_and_exits_with_1(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text('<robot name="arm">\n<link name="base"/>\n<link name="base"/>\n</robot>\n')
+    done = run("check", "arm.urdf", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "error[duplicate-link]" in done.stdout
+    assert " --> arm.urdf:3:13\n" in done.stdout
+    assert "Two links bear the same name" in ok("explain", "duplicate-link")
+
+
 def test_html_writes_a_page(tmp_path: Path) -> None:
     page = tmp_path / "nao.html"
     done = run("html", "nao", "--output", page, "--posture", "LHand=0.5")
@@ -277,7 +287,7 @@ def test_narrow_or_plain_terminals_lose_no_digit(environment: dict[str, str]) ->
 
 def test_version_help_and_no_colour() -> None:
     assert ok("--version").strip() == nk.__version__
-    for command in ("", "fk", "ik", "compare", "html", "demo", "robots", "bench"):
+    for command in ("", "fk", "ik", "compare", "check", "explain", "html", "demo", "robots", "bench"):
         assert "Usage" in ok(*filter(None, [command]), "--help")
     assert "\x1b[" not in ok("compare", "kofinas_head", NO_COLOR="1", FORCE_COLOR="1")
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import nao_kin as nk
+from nao_kin.cli.bench import bench
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -21,7 +22,14 @@ def blocks(text: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
 
 
-COMMANDS = [line for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("nao-kin ")]
+COMMANDS = [
+    command for line in README.splitlines() if line.startswith("| ") for command in re.findall(r"`(nao-kin .+?)`", line)
+]
+
+
+def test_the_readmes_benchmarks_exist() -> None:
+    asked = {shlex.split(command)[2] for command in COMMANDS if command.startswith("nao-kin bench")}
+    assert asked == {command.name or command.callback.__name__ for command in bench.registered_commands}
 
 
 @pytest.mark.parametrize("command", [c for c in COMMANDS if "bench" not in c])

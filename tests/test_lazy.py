@@ -29,6 +29,9 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
         (["robots"], {"numpy", "pinocchio", "numba", "meshcat", "trimesh", "yourdfpy", "lxml"}),
         (["fk", "jaco2"], {"numba", "meshcat", "trimesh", "yourdfpy"}),
         (["compare", "kofinas_head"], {"numba", "meshcat", "trimesh", "yourdfpy"}),
+        (["check", "nao"], {"numba", "meshcat", "trimesh", "yourdfpy", "rich"}),
+        (["check", "tests/corpus/zero-axis.urdf"], {"pinocchio", "numba", "meshcat", "trimesh", "yourdfpy"}),
+        (["explain", "zero-axis"], {"numpy", "pinocchio", "numba", "meshcat", "trimesh", "yourdfpy"}),
     ],
 )
 def test_commands_import_what_they_need_only(arguments: list[str], without: set[str]) -> None:
@@ -36,6 +39,12 @@ def test_commands_import_what_they_need_only(arguments: list[str], without: set[
         f"from nao_kin.cli.app import application\napplication({arguments[:1]!r})({arguments!r}, standalone_mode=False)"
     )
     assert imported_by(code).isdisjoint(without)
+
+
+def test_trimesh_is_imported_for_a_mesh_and_yourdfpy_for_a_second_opinion() -> None:
+    code = "import nao_kin as nk; nk.check('tests/corpus/{}.urdf', thorough={})"
+    assert imported_by(code.format("mesh-unit", False)) & {"trimesh", "yourdfpy"} == {"trimesh"}
+    assert "yourdfpy" in imported_by(code.format("mesh-unit.passes", True))
 
 
 def test_every_public_name_resolves_and_is_listed() -> None:

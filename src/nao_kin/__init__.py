@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
+    from nao_kin.checks.checker import check as check
+    from nao_kin.checks.finding import Finding as Finding
+    from nao_kin.checks.finding import Report as Report
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
@@ -61,12 +64,14 @@ _HOME = {
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",
+    "Finding": "checks.finding",
     "FollowResult": "ik.along",
     "IKResult": "ik.problem",
     "Ledger": "documents.ledger",
     "LimitRule": "chain",
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
+    "Report": "checks.finding",
     "Robot": "robot",
     "Solutions": "analytic.solutions",
     "Status": "ik.problem",
@@ -75,6 +80,7 @@ _HOME = {
     "Tree": "tree",
     "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",
+    "check": "checks.checker",
     "compare": "crosscheck",
     "document_chain": "documents.chains",
     "document_chain_names": "documents.chains",

@@ -136,11 +136,16 @@ class UrdfError(_FileError):
         line: Line number, 1-based, or None where the whole file is meant.
         reason: What is wrong, one sentence.
         hint: What to do about it; may be empty.
+        code: Name of the broken rule, as `nao-kin explain` takes it; may be empty.
     """
+
+    def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, code: str = "") -> None:
+        super().__init__(path, line, reason, hint)
+        self.code = code
 
 
 class TableFileError(_FileError):
-    """A DH table file was refused; the same attributes as `UrdfError`."""
+    """A DH table file was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

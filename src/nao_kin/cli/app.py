@@ -29,6 +29,8 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "fk": {"short_help": "Where a chain's tip is.", "context_settings": _NUMBERS},
     "ik": {"short_help": "Joints that bring a tip somewhere."},
     "compare": {"short_help": "A table against a model, or any two chains."},
+    "check": {"short_help": "Defects of URDF files, with lines; for CI."},
+    "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
     "html": {"short_help": "One HTML page that shows a robot."},
     "warmup": {"short_help": "Compile ahead what later calls need."},

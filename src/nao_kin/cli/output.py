@@ -15,7 +15,16 @@ if TYPE_CHECKING:
 
     from nao_kin.table import Table
 
-__all__ = ["FormatOption", "OutputFormat", "number", "progress", "report", "report_json", "rows_of_numbers"]
+__all__ = [
+    "FormatOption",
+    "OutputFormat",
+    "number",
+    "progress",
+    "report",
+    "report_json",
+    "rows_of_numbers",
+    "wants_colour",
+]
 
 
 T = TypeVar("T")
@@ -41,6 +50,13 @@ def report(*parts: Table | str) -> None:
     console.width = max(console.width, 80)  # a narrower terminal folds lines; rich would cut digits off
     for part in parts:
         console.print(Text(part) if isinstance(part, str) else part)
+
+
+def wants_colour() -> bool:
+    """Whether standard output takes colours: a terminal that can, or FORCE_COLOR; never with NO_COLOR."""
+    if os.environ.get("NO_COLOR"):
+        return False
+    return bool(os.environ.get("FORCE_COLOR")) or (sys.stdout.isatty() and os.environ.get("TERM") != "dumb")
 
 
 def report_json(data: Any) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import heapq
+from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import near_matches
@@ -18,10 +21,12 @@ __all__ = [
     "mimic_cycles",
     "mimic_references",
     "no_links",
+    "rings",
     "several_roots",
     "two_parents",
 ]
 
+_CLOSELY = 20
 _COMPARED = 64  # longer names are not compared: the time that takes grows with the square of their length
 
 
@@ -32,15 +37,17 @@ def link_references(outline: Outline) -> Iterator[Defect]:
         for end in ("parent", "child"):
             element, name = first(joint, end), link_named(joint, end)
             if element is None:
-                yield Defect(line_of(joint), where, f"The {where} has no <{end}>.", f'Add <{end} link="..."/>.')
+                yield Defect(f"no-{end}", joint, f"The {where} has no <{end}>.", f'Add <{end} link="..."/>.')
             elif not name:
-                yield Defect(line_of(element), where, f"The <{end}> of the {where} names no link.")
+                message = f"The <{end}> of the {where} names no link."
+                yield Defect(f"no-{end}", element, message, f'Write <{end} link="..."/>.')
             elif name not in outline.link_by_name:
                 message = f"The {end} {shown(name)} of the {where} is not a link of this file."
-                yield Defect(line_of(element), where, message, _near_hint(name, outline.link_by_name))
+                yield Defect(f"unknown-{end}", element, message, _near_hint(name, outline.link_by_name), "link")
         parent = link_named(joint, "parent")
         if parent and parent == link_named(joint, "child"):
-            yield Defect(line_of(joint), where, f"The {where} connects the link {shown(parent)} with itself.")
+            message = f"The {where} connects the link {shown(parent)} with itself."
+            yield Defect("self-joint", joint, message, "Name two different links.")
 
 
 def mimic_references(outline: Outline) -> Iterator[Defect]:
@@ -51,19 +58,19 @@ def mimic_references(outline: Outline) -> Iterator[Defect]:
             continue
         leader, where = mimic.get("joint", ""), describe(joint)
         if not leader:
-            yield Defect(line_of(mimic), where, f"The <mimic> of the {where} names no joint.")
+            message = f"The <mimic> of the {where} names no joint."
+            yield Defect("unknown-leader", mimic, message, 'Write <mimic joint="..."/>.')
         elif leader == joint.get("name"):
-            yield Defect(line_of(mimic), where, f"The {where} mimics itself.", "Name another joint.")
+            yield Defect("self-mimic", mimic, f"The {where} mimics itself.", "Name another joint.", "joint")
         elif leader not in outline.joint_by_name:
             message = f"The {where} mimics {shown(leader)}, which is not a joint of this file."
-            yield Defect(line_of(mimic), where, message, _near_hint(leader, outline.joint_by_name))
+            yield Defect("unknown-leader", mimic, message, _near_hint(leader, outline.joint_by_name), "joint")
         elif outline.joint_by_name[leader].get("type") not in MOVING:
-            yield Defect(line_of(mimic), where, f"The {where} mimics {shown(leader)}, which does not move.")
+            message = f"The {where} mimics {shown(leader)}, which does not move."
+            yield Defect("fixed-leader", mimic, message, "Name a joint that moves, or make this one fixed.", "joint")
         elif _is_zero(mimic.get("multiplier")):
-            hint = "Make the joint fixed if it is not to move."
-            yield Defect(
-                line_of(mimic), where, f"The {where} mimics {shown(leader)} with multiplier 0 or next to it.", hint
-            )
+            message = f"The {where} mimics {shown(leader)} with multiplier 0 or next to it."
+            yield Defect("zero-multiplier", mimic, message, "Make the joint fixed if it is not to move.", "multiplier")
 
 
 def _is_zero(text: str | None) -> bool:
@@ -76,7 +83,7 @@ def _is_zero(text: str | None) -> bool:
 def no_links(outline: Outline) -> Iterator[Defect]:
     """There is something to move."""
     if not outline.links:
-        yield Defect(line_of(outline.root), "robot", "The robot has no links.")
+        yield Defect("no-links", outline.root, "The robot has no links.", 'Add at least <link name="base_link"/>.')
 
 
 def two_parents(outline: Outline) -> Iterator[Defect]:
@@ -87,7 +94,7 @@ def two_parents(outline: Outline) -> Iterator[Defect]:
         if child in claimed:
             message = f"The link {shown(child)} is the child of the {describe(claimed[child])} already."
             hint = "A URDF is a tree: close a loop in the program, not in the file."
-            yield Defect(line_of(joint), describe(joint), message, hint)
+            yield Defect("two-parents", joint, message, hint)
         claimed.setdefault(child, joint)
 
 
@@ -96,7 +103,7 @@ def several_roots(outline: Outline) -> Iterator[Defect]:
     roots = [link for link in outline.links if not outline.child_counts[link.get("name", "")]]
     for link in roots[1:]:
         message = f"The {describe(link)} hangs on no joint, and neither does the {describe(roots[0])}."
-        yield Defect(line_of(link), describe(link), message, "Connect them by a joint, or remove one.")
+        yield Defect("several-roots", link, message, "Connect them by a joint, or remove one.", "name")
 
 
 def cycles(outline: Outline) -> Iterator[Defect]:
@@ -104,11 +111,11 @@ def cycles(outline: Outline) -> Iterator[Defect]:
     joint_above = {link_named(joint, "child"): joint for joint in reversed(outline.joints)}
     above = {child: link_named(joint, "parent") for child, joint in joint_above.items()}
     found: list[Defect] = []
-    for ring in _rings(above):
+    for ring in rings(above):
         joint = min((joint_above[name] for name in ring), key=line_of)
         message = f"The links {_listed(ring)} form a closed loop, which no root reaches."
-        found.append(Defect(line_of(joint), describe(joint), message, "A URDF is a tree."))
-    yield from sorted(found, key=lambda defect: defect.line or 0)
+        found.append(Defect("cycle", joint, message, "A URDF is a tree: give one of these joints another child."))
+    yield from sorted(found, key=lambda defect: defect.line)
 
 
 def mimic_cycles(outline: Outline) -> Iterator[Defect]:
@@ -118,14 +125,16 @@ def mimic_cycles(outline: Outline) -> Iterator[Defect]:
     }
     leaders = {name: mimic.get("joint", "") for name, mimic in mimic_of.items()}
     found: list[Defect] = []
-    for ring in _rings(leaders):
+    for ring in rings(leaders):
+        if len(ring) == 1:
+            continue  # reported as mimicking itself
         mimic = min((mimic_of[name] for name in ring), key=line_of)
         message = f"The joints {_listed(ring)} mimic one another in a circle."
-        found.append(Defect(line_of(mimic), describe(mimic), message, "One of them has to lead."))
-    yield from sorted(found, key=lambda defect: defect.line or 0)
+        found.append(Defect("mimic-cycle", mimic, message, "One of them has to lead.", "joint"))
+    yield from sorted(found, key=lambda defect: defect.line)
 
 
-def _rings(successor: dict[str, str]) -> list[list[str]]:
+def rings(successor: dict[str, str]) -> list[list[str]]:
     """The closed rings of a map from each name to the next, in time proportional to its size."""
     done: set[str] = set()
     rings: list[list[str]] = []
@@ -150,5 +159,15 @@ def _listed(names: list[str]) -> str:
 def _near_hint(name: str, known: Iterable[str]) -> str:
     if len(name) > _COMPARED:
         return ""
-    near = near_matches(name, (candidate for candidate in known if len(candidate) <= _COMPARED))
+    # The names with most pairs of letters in common first: to compare with all takes seconds in a hostile file.
+    pairs, short = _pairs(name), (candidate for candidate in known if len(candidate) <= _COMPARED)
+    likely = heapq.nlargest(_CLOSELY, short, key=lambda candidate: len(pairs & _pairs(candidate)))
+    near = near_matches(name, likely)
     return f"Did you mean {' or '.join(map(repr, near))}?" if near else ""
+
+
+@lru_cache(maxsize=4096)
+def _pairs(name: str) -> frozenset[str]:
+    """The pairs of neighbouring letters of a name."""
+    folded = name.casefold()
+    return frozenset(map("".join, pairwise(folded)))

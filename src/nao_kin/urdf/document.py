@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from nao_kin.errors import UnknownNameError, UrdfError
 from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.outline import Outline
+from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.reader import read_joints, read_links
 from nao_kin.urdf.safe_xml import read_tree
 from nao_kin.urdf.structure import first_defect
@@ -21,7 +22,10 @@ from nao_kin.urdf.writer import kinematic_xml
 if TYPE_CHECKING:
     from nao_kin.urdf.elements import UrdfJoint, UrdfLink
 
-__all__ = ["UrdfDocument", "parse_urdf", "read_urdf"]
+__all__ = ["UNREADABLE", "UrdfDocument", "document_of", "parse_urdf", "read_bytes", "read_urdf"]
+
+UNREADABLE = "unreadable"
+"""Code of the refusals that say nothing about a file's content, because there is none to read."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,7 @@ def read_urdf(path: str | os.PathLike[str]) -> UrdfDocument:
             a DOCTYPE, is an unexpanded xacro, or breaks a structural rule; with the line where there is one.
     """
     name = os.fspath(path)
-    document = parse_urdf(_read_bytes(name), name)
+    document = parse_urdf(read_bytes(name), name)
     return replace(document, directory=Path(name).absolute().parent)
 
 
@@ -116,15 +120,21 @@ def parse_urdf(data: bytes, path: str = "<urdf>") -> UrdfDocument:
         UrdfError: As `read_urdf` raises it for the content of a file.
     """
     tree = read_tree(data, path)
-    defect = first_defect(tree)
-    if defect is not None:
-        raise UrdfError(path, defect.line, defect.message, defect.hint)
     outline = Outline(tree)
+    defect = first_defect(outline)
+    if defect is not None:
+        line = Positions.of(data, tree).place(defect).line
+        raise UrdfError(path, line, defect.message, defect.hint, code=defect.code)
+    return document_of(outline, data, path)
+
+
+def document_of(outline: Outline, data: bytes, path: str) -> UrdfDocument:
+    """The content of a tree that has passed every structural rule, and that was read from these bytes."""
     links, joints = read_links(outline), read_joints(outline)
     children = {joint.child for joint in joints}
     return UrdfDocument(
         path=path,
-        name=tree.get("name", ""),
+        name=outline.root.get("name", ""),
         sha256=hashlib.sha256(data).hexdigest(),
         links=links,
         joints=joints,
@@ -132,7 +142,12 @@ def parse_urdf(data: bytes, path: str = "<urdf>") -> UrdfDocument:
     )
 
 
-def _read_bytes(path: str) -> bytes:
+def read_bytes(path: str) -> bytes:
+    """The bytes of a file that may come from a stranger, one more than the largest file has if there are more.
+
+    Raises:
+        UrdfError: The file is missing, unreadable, not a regular file, or too large.
+    """
     try:
         # Looked at before it is opened, because opening alone can disturb a pipe or a device, and again afterwards,
         # because another file may have taken its place. O_NONBLOCK keeps a pipe from holding us up in that case.
@@ -144,10 +159,10 @@ def _read_bytes(path: str) -> bytes:
     except UrdfError:  # which is a ValueError too
         raise
     except FileNotFoundError:
-        raise UrdfError(path, None, "There is no such file.") from None
+        raise UrdfError(path, None, "There is no such file.", code=UNREADABLE) from None
     except (OSError, ValueError) as error:
         said = error.strerror if isinstance(error, OSError) else str(error)
-        raise UrdfError(path, None, f"The file cannot be read: {said}.") from None
+        raise UrdfError(path, None, f"The file cannot be read: {said}.", code=UNREADABLE) from None
 
 
 def _check_regular(status: os.stat_result, path: str) -> None:
@@ -160,7 +175,7 @@ def _check_regular(status: os.stat_result, path: str) -> None:
     }
     if not stat.S_ISREG(status.st_mode):
         kind = kinds.get(stat.S_IFMT(status.st_mode), "something else")
-        raise UrdfError(path, None, f"A URDF is a regular file, but this is {kind}.")
+        raise UrdfError(path, None, f"A URDF is a regular file, but this is {kind}.", code=UNREADABLE)
     if status.st_size > LIMITS.file_bytes:
         reason = f"The file has {status.st_size} bytes; at most {LIMITS.file_bytes} are read."
-        raise UrdfError(path, None, reason)
+        raise UrdfError(path, None, reason, code="too-large")

@@ -15,7 +15,7 @@ from nao_kin.urdf.outline import tag_of
 if TYPE_CHECKING:
     from lxml import etree
 
-__all__ = ["FIELDS", "Field", "decimal_numbers", "fields_of", "optional_number", "read_numbers"]
+__all__ = ["FIELDS", "Field", "NumberError", "decimal_numbers", "fields_of", "optional_number", "read_numbers"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +80,7 @@ _LEAVES = frozenset(path[-1] for path in FIELDS)
 
 # float() would also take hexadecimal-looking words, "nan", "infinity", "1_000" and digits of other scripts.
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _WORD = re.compile(r"[^ \t\r\n]+")  # the blanks of XML; str.split() knows many more
 
 
@@ -97,24 +98,34 @@ def fields_of(element: etree._Element) -> tuple[Field, ...]:
     return FIELDS.get(tuple(path), ())
 
 
+class NumberError(ValueError):
+    """A text does not hold the numbers it should; the message is a predicate, the code names the broken rule."""
+
+    def __init__(self, code: str, predicate: str) -> None:
+        self.code = code
+        super().__init__(predicate)
+
+
 def decimal_numbers(text: str, count: int) -> tuple[float, ...]:
     """Read exactly `count` finite decimal numbers separated by blanks.
 
     Raises:
-        ValueError: There are more or fewer, or one is not a finite decimal number; the message is a predicate such as
+        NumberError: There are more or fewer, or one is not a finite decimal number; the message is a predicate such as
             "holds 2 numbers instead of 3".
     """
     words = _WORD.findall(text)
     if len(words) != count:
         numbers = "1 number" if len(words) == 1 else f"{len(words)} numbers"
-        raise ValueError(f"holds {numbers if words else 'no number'} instead of {count}")
+        raise NumberError("wrong-count", f"holds {numbers if words else 'no number'} instead of {count}")
     for word in words:
         if not _DECIMAL.fullmatch(word):
-            raise ValueError(f"holds {word[:40]!r}, which is not a finite decimal number")
+            code = "not-finite" if _NOT_FINITE.fullmatch(word) else "not-a-number"
+            raise NumberError(code, f"holds {word[:40]!r}, which is not a finite decimal number")
     values = tuple(map(float, words))
     for word, value in zip(words, values, strict=True):
         if not math.isfinite(value):
-            raise ValueError(f"holds {word[:40]!r}, which is beyond the largest number a computer can hold")
+            predicate = f"holds {word[:40]!r}, which is beyond the largest number a computer can hold"
+            raise NumberError("not-finite", predicate)
     return values
 
 

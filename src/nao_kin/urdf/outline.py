@@ -1,7 +1,7 @@
 """The element tree as rules and reader see it: only what URDF gives a meaning, each element with its line.
 
-Line numbers are those of the end of an element's start tag, as libxml2 counts them. It counts in 16 bits and guesses
-beyond, which is why `ReadLimits` allows no more lines than that.
+Line numbers are those of the end of an element's start tag, as libxml2 counts them; `positions.py` finds the exact
+place. libxml2 counts in 16 bits and guesses beyond, which is why `ReadLimits` allows no more lines than that.
 """
 
 from __future__ import annotations
@@ -27,16 +27,25 @@ class Defect:
     """One thing wrong with a file.
 
     Attributes:
-        line: Line of the element, 1-based, or None where the whole file is meant.
-        element: The element, for example ``"joint 'elbow'"``.
+        code: Name of the broken rule, for example ``"zero-axis"``.
+        at: The element where it shows.
         message: What is wrong, one sentence.
         hint: What to do about it; may be empty.
+        attribute: The attribute of `at` where it shows; may be empty.
+        offset: The character of the text where it shows, where no element does; negative otherwise.
     """
 
-    line: int | None
-    element: str
+    code: str
+    at: etree._Element
     message: str
     hint: str = ""
+    attribute: str = ""
+    offset: int = -1
+
+    @property
+    def line(self) -> int:
+        """Line on which the element's start tag ends, 1-based."""
+        return line_of(self.at)
 
 
 def tag_of(element: etree._Element) -> str:
@@ -112,6 +121,14 @@ class Outline:
     def child_counts(self) -> Counter[str]:
         """How often each link is the child of a joint."""
         return Counter(child for joint in self.joints if (child := link_named(joint, "child")))
+
+    def meshes(self) -> Iterator[etree._Element]:
+        """The mesh elements of visual and collision elements, in file order."""
+        for link in self.links:
+            for solid in link:
+                geometry = first(solid, "geometry") if tag_of(solid) in {"visual", "collision"} else None
+                if geometry is not None and (mesh := first(geometry, "mesh")) is not None:
+                    yield mesh
 
     def described(self) -> Iterator[etree._Element]:
         """Every element that describes the robot, in file order: links, joints and materials with all they hold.

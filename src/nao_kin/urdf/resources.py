@@ -38,8 +38,8 @@ _ROOTS_HINT = "Name the folder that holds it as a mesh root."
 class _RefusedError(Exception):
     """Why a wish is not granted; the caller adds the place."""
 
-    def __init__(self, reason: str, hint: str = "") -> None:
-        self.reason, self.hint = reason, hint
+    def __init__(self, code: str, reason: str, hint: str = "") -> None:
+        self.code, self.reason, self.hint = code, reason, hint
         super().__init__(reason)
 
 
@@ -78,19 +78,22 @@ def resolve_mesh(
     try:
         return _resolve(filename, directory, roots)
     except _RefusedError as refusal:
-        raise UrdfError(path, line, f"The mesh {shown(filename)} {refusal.reason}.", refusal.hint) from None
+        reason = f"The mesh {shown(filename)} {refusal.reason}."
+        raise UrdfError(path, line, reason, refusal.hint, code=refusal.code) from None
 
 
 def _resolve(filename: str, directory: Path | None, roots: MeshRoots) -> Path:
     if "\0" in filename or not filename.strip():
-        raise _RefusedError("is not a file name")
+        raise _RefusedError("mesh-name", "is not a file name")
     if len(filename) > LIMITS.value_characters:
-        raise _RefusedError(f"has more than {LIMITS.value_characters} characters")
+        raise _RefusedError("mesh-name", f"has more than {LIMITS.value_characters} characters")
     if Path(filename).suffix.lower() not in MESH_SUFFIXES:
-        raise _RefusedError(f"is not of a mesh format that is read ({', '.join(sorted(MESH_SUFFIXES))})")
+        formats = ", ".join(sorted(MESH_SUFFIXES))
+        raise _RefusedError("mesh-format", f"is not of a mesh format that is read ({formats})")
     allowed = _allowed_folders(directory, roots)
-    outside = False
+    outside = looked = False
     for candidate, package in _candidates(filename, directory, roots):
+        looked = True
         try:
             real = Path(os.path.realpath(candidate, strict=True))
         except (OSError, ValueError):
@@ -98,7 +101,11 @@ def _resolve(filename: str, directory: Path | None, roots: MeshRoots) -> Path:
         if _is_below(real, allowed if package is None else [*allowed, package]):
             return _checked(real)
         outside = True
-    raise _RefusedError("lies outside the folders that may be read" if outside else "is not there", _ROOTS_HINT)
+    if outside:
+        raise _RefusedError("mesh-outside", "lies outside the folders that may be read", _ROOTS_HINT)
+    if not looked:
+        raise _RefusedError("mesh-package", "is not there", _ROOTS_HINT)
+    raise _RefusedError("mesh-missing", "is not there", _ROOTS_HINT)
 
 
 def _candidates(filename: str, directory: Path | None, roots: MeshRoots) -> Iterator[tuple[Path, Path | None]]:
@@ -109,7 +116,7 @@ def _candidates(filename: str, directory: Path | None, roots: MeshRoots) -> Iter
         # Some exporters write three slashes.
         name, _, inside = rest.lstrip("/").partition("/")
         if not _PACKAGE.fullmatch(name):
-            raise _RefusedError("names no package")
+            raise _RefusedError("mesh-name", "names no package")
         for folder in _given_packages(name, roots):
             yield folder / inside.lstrip("/"), None
         for folder in _packages_above(name, directory):
@@ -118,11 +125,11 @@ def _candidates(filename: str, directory: Path | None, roots: MeshRoots) -> Iter
     if scheme == "file":
         rest = unquote(rest.removeprefix("localhost"))
         if "\0" in rest or not rest.startswith("/"):
-            raise _RefusedError("is not an absolute file address")
+            raise _RefusedError("mesh-name", "is not an absolute file address")
     elif scheme:
-        raise _RefusedError(f"is an address of kind {scheme[:20]!r}; only files are read")
+        raise _RefusedError("mesh-name", f"is an address of kind {scheme[:20]!r}; only files are read")
     if directory is None and not rest.startswith("/"):
-        raise _RefusedError("is relative, but the document has no folder")
+        raise _RefusedError("mesh-package", "is relative, but the document has no folder")
     yield (directory or Path("/")) / rest, None
 
 
@@ -186,11 +193,12 @@ def _checked(real: Path) -> Path:
     try:
         status = real.stat()
     except OSError as error:
-        raise _RefusedError(f"cannot be read: {error.strerror}") from None
+        raise _RefusedError("mesh-unreadable", f"cannot be read: {error.strerror}") from None
     if not stat.S_ISREG(status.st_mode):
-        raise _RefusedError("is not a regular file")
+        raise _RefusedError("mesh-unreadable", "is not a regular file")
     if real.suffix.lower() not in MESH_SUFFIXES:  # a symbolic link may end otherwise than what it leads to
-        raise _RefusedError("leads to a file that is not a mesh by its ending")
+        raise _RefusedError("mesh-format", "leads to a file that is not a mesh by its ending")
     if status.st_size > LIMITS.mesh_bytes:
-        raise _RefusedError(f"has {status.st_size} bytes; at most {LIMITS.mesh_bytes} are read")
+        reason = f"has {status.st_size} bytes; at most {LIMITS.mesh_bytes} are read"
+        raise _RefusedError("mesh-unreadable", reason)
     return real

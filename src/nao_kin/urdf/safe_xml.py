@@ -60,23 +60,26 @@ def read_tree(data: bytes, path: str) -> etree._Element:
 
 def _check_size(data: bytes, path: str) -> None:
     if len(data) > LIMITS.file_bytes:
-        raise UrdfError(path, None, f"The file has {len(data)} bytes; at most {LIMITS.file_bytes} are read.")
+        reason = f"The file has {len(data)} bytes; at most {LIMITS.file_bytes} are read."
+        raise UrdfError(path, None, reason, code="too-large")
     if not data.strip():
-        raise UrdfError(path, None, "The file is empty.")
+        raise UrdfError(path, None, "The file is empty.", code="empty-file")
 
 
 def _check_encoding(data: bytes, path: str) -> None:
     for mark, name in _BYTE_ORDER_MARKS.items():
         if data.startswith(mark):
-            raise UrdfError(path, 1, f"The file is encoded in {name}, not in UTF-8.", _ENCODING_HINT)
+            reason = f"The file is encoded in {name}, not in UTF-8."
+            raise UrdfError(path, 1, reason, _ENCODING_HINT, code="not-utf8")
     nul = data.find(b"\x00")
     if nul >= 0:
         reason = "The file contains a NUL byte, so it is not UTF-8 text."
-        raise UrdfError(path, _line_at(data, nul), reason, _ENCODING_HINT)
+        raise UrdfError(path, _line_at(data, nul), reason, _ENCODING_HINT, code="not-utf8")
     declared = _DECLARED_ENCODING.match(data.removeprefix(_UTF8_MARK)[:512])
     if declared and declared[1].decode("ascii", "replace").lower() not in _UTF8_NAMES:
         name = declared[1].decode("ascii", "replace")
-        raise UrdfError(path, 1, f"The file declares the encoding {name!r}; only UTF-8 is read.", _ENCODING_HINT)
+        reason = f"The file declares the encoding {name!r}; only UTF-8 is read."
+        raise UrdfError(path, 1, reason, _ENCODING_HINT, code="not-utf8")
 
 
 def _check_prolog(data: bytes, path: str) -> None:
@@ -90,15 +93,16 @@ def _check_prolog(data: bytes, path: str) -> None:
 
 def _doctype_error(path: str, line: int | None) -> UrdfError:
     hint = "Remove the DOCTYPE and write out its entities; a URDF needs neither."
-    return UrdfError(path, line, "The file declares a DOCTYPE, through which XML can reach other files.", hint)
+    reason = "The file declares a DOCTYPE, through which XML can reach other files."
+    return UrdfError(path, line, reason, hint, code="doctype")
 
 
 def _check_amount(data: bytes, path: str) -> None:
     for sign, most, what in ((b"<", LIMITS.markup, "tags"), (b"=", LIMITS.attributes, "attributes")):
         if data.count(sign) > most:
-            raise UrdfError(path, None, f"The file holds more than {most} {what}.")
+            raise UrdfError(path, None, f"The file holds more than {most} {what}.", code="too-large")
     if data.count(b"\n") > LIMITS.lines:
-        raise UrdfError(path, None, f"The file has more than {LIMITS.lines} lines.")
+        raise UrdfError(path, None, f"The file has more than {LIMITS.lines} lines.", code="too-large")
 
 
 def _parse(data: bytes, path: str) -> etree._Element:
@@ -126,14 +130,17 @@ def _syntax_error(error: etree.XMLSyntaxError, path: str) -> UrdfError:
     said = re.sub(r"\s*,?\s*line \d+, column \d+\s*$", "", error.msg or "").strip()
     said = re.sub(r"\s+", " ", "".join(c if c.isprintable() else " " for c in said))[:200].rstrip(".")
     if "Excessive depth" in said:
-        return UrdfError(path, line, f"Elements are nested deeper than {LIMITS.depth} levels.")
+        reason = f"Elements are nested deeper than {LIMITS.depth} levels."
+        return UrdfError(path, line, reason, code="too-deep")
     if "XML_PARSE_HUGE" in said or "too long" in said.lower():
-        return UrdfError(path, line, "A name, value or text is longer than the XML parser reads.")
+        reason = "A name, value or text is longer than the XML parser reads."
+        return UrdfError(path, line, reason, code="too-large")
     if "UTF-8" in said or "encoding" in said:
-        return UrdfError(path, line, "The file is not UTF-8 text.", _ENCODING_HINT)
+        return UrdfError(path, line, "The file is not UTF-8 text.", _ENCODING_HINT, code="not-utf8")
     if said.startswith("Namespace prefix xacro"):
-        return UrdfError(path, line, "The file is an unexpanded xacro without its namespace.", _EXPANSION_HINT)
-    return UrdfError(path, line, f"The file is not well-formed XML: {said}.")
+        reason = "The file is an unexpanded xacro without its namespace."
+        return UrdfError(path, line, reason, _EXPANSION_HINT, code="unexpanded-xacro")
+    return UrdfError(path, line, f"The file is not well-formed XML: {said}.", code="not-well-formed")
 
 
 def _check_nesting(root: etree._Element, path: str) -> None:
@@ -144,14 +151,15 @@ def _check_nesting(root: etree._Element, path: str) -> None:
             continue
         depth += 1
         if depth > LIMITS.depth:
-            raise UrdfError(path, element.sourceline, f"Elements are nested deeper than {LIMITS.depth} levels.")
+            reason = f"Elements are nested deeper than {LIMITS.depth} levels."
+            raise UrdfError(path, element.sourceline, reason, code="too-deep")
         if len(element.attrib) > LIMITS.attributes_per_element:
             reason = f"An element has more than {LIMITS.attributes_per_element} attributes."
-            raise UrdfError(path, element.sourceline, reason)
+            raise UrdfError(path, element.sourceline, reason, code="too-large")
         for name, value in element.attrib.items():
             if len(value) > LIMITS.value_characters:
                 reason = f"The attribute {str(name)[:40]!r} has more than {LIMITS.value_characters} characters."
-                raise UrdfError(path, element.sourceline, reason)
+                raise UrdfError(path, element.sourceline, reason, code="too-large")
 
 
 def _line_at(data: bytes, offset: int) -> int:

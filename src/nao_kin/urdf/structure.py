@@ -7,8 +7,7 @@ the earlier ones found nothing: an unexpanded xacro has no numbers yet, and a mi
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from nao_kin.errors import near_matches
 from nao_kin.urdf import connection, values
@@ -20,20 +19,9 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
+    Rule: TypeAlias = Callable[[Outline], Iterator[Defect]]
+
 __all__ = ["STAGES", "Defect", "Outline", "Rule", "defects", "first_defect"]
-
-
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """One structural rule.
-
-    Attributes:
-        code: Its permanent name, for example ``"duplicate-name"``.
-        check: Yields the defects of a file in file order.
-    """
-
-    code: str
-    check: Callable[[Outline], Iterator[Defect]]
 
 
 def root_element(outline: Outline) -> Iterator[Defect]:
@@ -47,7 +35,7 @@ def root_element(outline: Outline) -> Iterator[Defect]:
     }
     given = shown(tag or str(root.tag))[1:-1]
     message = f"The root element is <{given}>, but a URDF begins with <robot>."
-    yield Defect(line_of(root), given, message, hints.get(tag, ""))
+    yield Defect("not-robot", root, message, hints.get(tag, ""))
 
 
 def unexpanded_xacro(outline: Outline) -> Iterator[Defect]:
@@ -59,15 +47,15 @@ def unexpanded_xacro(outline: Outline) -> Iterator[Defect]:
         if element.prefix == "xacro" or (namespace.startswith("{") and "xacro" in namespace):
             name = f"<xacro:{shown(str(element.tag).rpartition('}')[2])[1:-1]}>"
             message = f"The element {name} shows that the file is an unexpanded xacro."
-            yield Defect(line_of(element), name, message, hint)
+            yield Defect("unexpanded-xacro", element, message, hint)
             continue
         if element not in described:
             continue  # simulators and controllers have $(...) of their own
-        for value in element.attrib.values():
+        for attribute, value in element.attrib.items():
             text = str(value)
             if "${" in text or "$(" in text:
                 message = f"The value {shown(text)} of {describe(element)} is an unexpanded xacro expression."
-                yield Defect(line_of(element), describe(element), message, hint)
+                yield Defect("unexpanded-xacro", element, message, hint, str(attribute))
                 break
 
 
@@ -79,28 +67,27 @@ def too_many(outline: Outline) -> Iterator[Defect]:
         ("moving joints", outline.moving, LIMITS.moving_joints),
     ):
         if len(elements) > most:
-            line = line_of(elements[most])
-            yield Defect(line, "robot", f"The robot has {len(elements)} {what}; at most {most} are read.")
+            message = f"The robot has {len(elements)} {what}; at most {most} are read."
+            yield Defect("too-many", elements[most], message)
 
 
 def names(outline: Outline) -> Iterator[Defect]:
     """The robot and every link, joint and named material have a usable name."""
     root = outline.root
     if root.get("name") is None:
-        hint = 'Write <robot name="...">.'
-        yield Defect(line_of(root), "robot", "The robot has no name.", hint)
+        yield Defect("no-name", root, "The robot has no name.", 'Write <robot name="...">.')
     for element in (root, *(part for part in outline.described() if tag_of(part) in {"link", "joint", "material"})):
-        name = element.get("name")
+        name, what = element.get("name"), tag_of(element)
         required = tag_of(element) in {"link", "joint"} and element.getparent() is root
-        fault = _name_fault(name, required=required or element is root)
-        if fault and not (element is root and name is None):
-            what = tag_of(element)
-            yield Defect(line_of(element), what, f"A {what} has {fault}.")
+        if name is None or not name.strip():
+            if required or (element is root and name is not None):
+                yield Defect("no-name", element, f"A {what} has no name.", f'Write <{what} name="...">.', "name")
+        elif fault := _name_fault(name):
+            hint = "Give it a short name of letters, digits and underscores."
+            yield Defect("bad-name", element, f"A {what} has {fault}.", hint, "name")
 
 
-def _name_fault(name: str | None, *, required: bool) -> str:
-    if name is None or not name.strip():
-        return "no name" if required else ""
+def _name_fault(name: str) -> str:
     if len(name) > LIMITS.name_characters:
         return f"a name of {len(name)} characters; at most {LIMITS.name_characters} are read"
     # Besides control characters str.isprintable rejects those that are invisible or reverse the writing direction.
@@ -114,17 +101,17 @@ def reserved_names(outline: Outline) -> Iterator[Defect]:
     for element in (*outline.links, *outline.joints):
         if element.get("name") == "universe" and (tag_of(element) == "joint" or outline.child_counts["universe"]):
             message = f"The name 'universe' of a {tag_of(element)} is reserved for the world."
-            yield Defect(line_of(element), describe(element), message, "Give it another name.")
+            yield Defect("reserved-name", element, message, "Give it another name.", "name")
 
 
 def duplicate_names(outline: Outline) -> Iterator[Defect]:
     """No two links and no two joints bear the same name; a link and a joint may."""
     for elements, firsts in ((outline.links, outline.link_by_name), (outline.joints, outline.joint_by_name)):
         for element in elements:
-            name = element.get("name", "")
+            name, what = element.get("name", ""), tag_of(element)
             if name and element is not firsts[name]:
-                message = f"The {tag_of(element)} {shown(name)} exists already on line {line_of(firsts[name])}."
-                yield Defect(line_of(element), describe(element), message, "Give each a name of its own.")
+                message = f"The {what} {shown(name)} exists already on line {line_of(firsts[name])}."
+                yield Defect(f"duplicate-{what}", element, message, "Give each a name of its own.", "name")
 
 
 def joint_types(outline: Outline) -> Iterator[Defect]:
@@ -136,15 +123,16 @@ def joint_types(outline: Outline) -> Iterator[Defect]:
             continue
         where = describe(joint)
         if kind is None:
-            yield Defect(line_of(joint), where, f"The {where} has no type.", f"Types: {', '.join(known)}.")
+            yield Defect("no-joint-type", joint, f"The {where} has no type.", f"Types: {', '.join(known)}.")
         elif kind in {"floating", "planar"}:
             message = f"The {where} is {kind}; only joints with one number each are supported."
             hint = "Leave it out (its child becomes the root) or replace it by single joints."
-            yield Defect(line_of(joint), where, message, hint)
+            yield Defect("unsupported-joint", joint, message, hint, "type")
         else:
             near = near_matches(kind[:64], known, limit=1)
             hint = f"Did you mean {near[0]!r}?" if near else f"Types: {', '.join(known)}."
-            yield Defect(line_of(joint), where, f"The {where} has the unknown type {shown(kind)}.", hint)
+            message = f"The {where} has the unknown type {shown(kind)}."
+            yield Defect("unknown-joint-type", joint, message, hint, "type")
 
 
 def single_parts(outline: Outline) -> Iterator[Defect]:
@@ -153,59 +141,58 @@ def single_parts(outline: Outline) -> Iterator[Defect]:
         counts = Counter(tag_of(part) for part in joint)
         for tag in ("parent", "child"):
             if counts[tag] > 1:
-                where = describe(joint)
                 second = children(joint, tag)[1]
-                yield Defect(line_of(second), where, f"The {where} has {counts[tag]} <{tag}> elements.", "Keep one.")
+                message = f"The {describe(joint)} has {counts[tag]} <{tag}> elements."
+                yield Defect("repeated-end", second, message, "Keep one.")
 
 
 STAGES: tuple[tuple[Rule, ...], ...] = (
-    (Rule("not-robot", root_element),),
-    (Rule("unexpanded-xacro", unexpanded_xacro),),
-    (Rule("too-many", too_many),),
+    (root_element,),
+    (unexpanded_xacro,),
+    (too_many,),
     (
-        Rule("bad-name", names),
-        Rule("reserved-name", reserved_names),
-        Rule("duplicate-name", duplicate_names),
-        Rule("joint-type", joint_types),
-        Rule("single-part", single_parts),
-        Rule("link-reference", connection.link_references),
-        Rule("bad-number", values.number_fields),
-        Rule("zero-axis", values.zero_axes),
-        Rule("missing-limit", values.missing_limits),
-        Rule("inverted-limit", values.inverted_limits),
-        Rule("missing-file", values.mesh_names),
-        Rule("mimic-reference", connection.mimic_references),
+        names,
+        reserved_names,
+        duplicate_names,
+        joint_types,
+        single_parts,
+        connection.link_references,
+        values.number_fields,
+        values.zero_axes,
+        values.missing_limits,
+        values.inverted_limits,
+        values.mesh_names,
+        connection.mimic_references,
     ),
     (
-        Rule("no-link", connection.no_links),
-        Rule("two-parents", connection.two_parents),
-        Rule("several-roots", connection.several_roots),
-        Rule("cycle", connection.cycles),
-        Rule("mimic-cycle", connection.mimic_cycles),
+        connection.no_links,
+        connection.two_parents,
+        connection.several_roots,
+        connection.cycles,
+        connection.mimic_cycles,
     ),
 )
 """All structural rules; the reader refuses a file for the first defect of the first stage that has one."""
 
 
-def defects(root: etree._Element) -> Iterator[tuple[Rule, Defect]]:
+def defects(root: etree._Element) -> Iterator[Defect]:
     """Every structural defect of a file, rule by rule, up to and including the first stage that has any."""
     outline = Outline(root)
     for stage in STAGES:
         spoilt = False
         for rule in stage:
-            for defect in rule.check(outline):
+            for defect in rule(outline):
                 spoilt = True
-                yield rule, defect
+                yield defect
         if spoilt:
             return
 
 
-def first_defect(root: etree._Element) -> Defect | None:
+def first_defect(outline: Outline) -> Defect | None:
     """The defect that stands first in the file, among those of the first stage that has any; None for a sound file."""
-    outline = Outline(root)
     for stage in STAGES:
         # Rules yield in file order, so the first of each is enough: a file full of defects costs no more than one.
-        found = [defect for rule in stage if (defect := next(rule.check(outline), None)) is not None]
+        found = [defect for rule in stage if (defect := next(rule(outline), None)) is not None]
         if found:
-            return min(found, key=lambda defect: defect.line or 0)
+            return min(found, key=lambda defect: defect.line)
     return None

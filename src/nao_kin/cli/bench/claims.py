@@ -10,6 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from nao_kin.cli.bench.closed_beside import Beside
     from nao_kin.cli.bench.method_sets import Outcome, TargetSet
 
 __all__ = ["Figures", "claims"]
@@ -28,12 +29,14 @@ class Figures:
         alone: Full range, one start.
         restarts: Full range, with restarts.
         hard: Edge of reach and singularity, one start.
+        beside: Closed forms beside all methods, in batches.
     """
 
     near: Sequence[Outcome]
     alone: Sequence[Outcome]
     restarts: Sequence[Outcome]
     hard: Sequence[Outcome]
+    beside: Sequence[Beside]
 
 
 def claims(figures: Figures) -> list[str]:
@@ -55,6 +58,30 @@ def _those(outcomes: Iterable[Outcome], methods: Sequence[str], kind: str) -> li
 
 def _micro(outcome: Outcome) -> float:
     return outcome.median_seconds * 1e6
+
+
+def _closed_is_fastest(f: Figures) -> tuple[bool, str]:
+    """Thesis 3.5."""
+    from nao_kin.cli.bench.closed_beside import CLOSED
+
+    told, ahead = [], list[str]()
+    for beside in f.beside:
+        others = {name: micro for name, micro in beside.micro.items() if name != CLOSED}
+        quickest = min(others, key=others.__getitem__)
+        ahead += [quickest] if others[quickest] < beside.micro[CLOSED] else []
+        ours = f"{beside.what} {beside.micro[CLOSED]:.1f} µs with every branch"
+        told.append(f"{ours}, {quickest} {others[quickest]:.1f} µs for one")
+    return not ahead, f"A target in a batch on one thread, judged: {'; '.join(told)}."
+
+
+def _closed_is_stable(f: Figures) -> tuple[bool, str]:
+    """Thesis 3.5."""
+    from nao_kin.cli.bench.closed_beside import CLOSED
+
+    told = ", ".join(f"{beside.what} {beside.success[CLOSED]:.1f} %" for beside in f.beside)
+    return all(beside.success[CLOSED] == 100.0 for beside in f.beside), (
+        f"Solved within limits: {told}. nao-kin bench closed says the same of singular poses and the border."
+    )
 
 
 def _fabrik_is_fastest(f: Figures) -> tuple[bool, str]:
@@ -222,6 +249,8 @@ def _single_starts(f: Figures) -> tuple[bool, str]:
 _CLAIMS: tuple[tuple[str, str, Callable[[Figures], tuple[bool, str]]], ...] = (
     ("Thesis 3.4", "robust, no singularities during the iteration of FABRIK", _edge_for_fabrik),
     ("Thesis 3.4", "FABRIK's pose looks natural", _natural),
+    ("Thesis 3.5", "the analytic solution takes the least computing time", _closed_is_fastest),
+    ("Thesis 3.5", "the analytic solution is very stable", _closed_is_stable),
     ("Thesis 3.5", "FABRIK is the fastest iterative method", _fabrik_is_fastest),
     ("Thesis 3.5", "Jacobian methods take 1000 times longer", _thousand_times),
     ("Thesis 3.5", "because of their many iterations", _many_iterations),

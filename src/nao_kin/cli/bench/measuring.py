@@ -8,7 +8,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
 __all__ = ["in_turns", "one_thread", "seconds", "timed", "undisturbed"]
 
@@ -39,7 +39,7 @@ def one_thread() -> Iterator[None]:
         numba.set_num_threads(threads)
 
 
-def timed(call: Callable[[Any], Any], inputs: Sequence[Any]) -> tuple[list[float], list[Any]]:
+def timed(call: Callable[[Any], Any], inputs: Iterable[Any]) -> tuple[list[float], list[Any]]:
     """The time of each call [s], and what it returned."""
     clock = time.perf_counter
     taken, answers = [], []

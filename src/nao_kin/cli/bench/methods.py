@@ -42,6 +42,8 @@ def methods(
     import numpy as np
 
     from nao_kin.cli.bench.claims import Figures, claims
+    from nao_kin.cli.bench.closed_beside import measured
+    from nao_kin.cli.bench.closed_beside import sheet as beside_sheet
 
     machine, rng = Machine(), np.random.default_rng(seed)
     sets = _sets(targets, rng)
@@ -49,6 +51,7 @@ def methods(
     alone = [outcome for s in sets["full"] for outcome in _everybody(s, long=True)]
     again = [outcome for s in sets["full"] for outcome in _everybody(s)]
     hard = [outcome for s in sets["hard"] for outcome in _everybody(s, long=True)]
+    beside = measured(seed)
     sheets = [
         _sheet("easy", f"near targets, one start, up to 5000 iterations; {targets} each", easy),
         _sheet("alone", "full range, one start, up to 5000 iterations", alone),
@@ -56,11 +59,12 @@ def methods(
         _sheet("hard", "edge of reach and singularity, one start, up to 5000 iterations", hard, timed=True),
         _time_sheet(again),
         _two_hands(max(10, targets // 5), seed),
+        beside_sheet(beside),
     ]
     everything = [*easy, *alone, *again, *hard]
     bounds = [*_easy_goals(easy), *_restart_goals(again), _honesty(everything)]
     notes = ["%: targets reached and confirmed by Pinocchio; it.: median iterations of those.", *_misses(easy)]
-    notes += [*claims(Figures(easy, alone, again, hard))]
+    notes += [*claims(Figures(easy, alone, again, hard, beside))]
     if plots is not None:
         from nao_kin.cli.bench.convergence import draw
 
@@ -155,14 +159,16 @@ def _two_hands(count: int, seed: int) -> Sheet:
         row: dict[str, Any] = {"method": name}
         for base, tree in trees.items():
             found = attempt(tree, wishes[base], f"{name}, both hands from {base}", method=name, budget=budget)
-            row |= {f"{base}_{key}": found[key] for key in ("solved", "iterations")}
+            row |= {f"{base}_{key}": found[key] for key in ("solved", "iterations", "ms")}
         rows.append(row)
     headings = (
         Heading("method", "method"),
         Heading("torso_solved", "from torso %", ".1f"),
         Heading("torso_iterations", "it.", ".0f"),
+        Heading("torso_ms", "ms", ".1f"),
         Heading("l_sole_solved", "from l_sole %", ".1f"),
         Heading("l_sole_iterations", "it.", ".0f"),
+        Heading("l_sole_ms", "ms", ".1f"),
     )
     title = f"both hands at once, positions, at most {_TWO_HANDS['restarts']} restarts; {count} targets"
     return Sheet("two_hands", title, headings, rows)

@@ -26,6 +26,7 @@ _STARTUP: tuple[tuple[str, tuple[str, ...], str, float], ...] = (
     ("import nao_kin", (sys.executable, "-c", "import nao_kin"), "import numpy", 1.5),
     ("nao-kin robots", (*_CLI, "robots"), "import numpy", 4.0),
     ("nao-kin fk jaco2", (*_CLI, "fk", "jaco2"), "import numpy, pinocchio", 2.5),
+    ("nao-kin check nao", (*_CLI, "check", "nao"), "import numpy, pinocchio", 2.5),
     ("first solve, warm cache", (sys.executable, "-c", _FIRST_SOLVE), "import numba, pinocchio", 3.0),
 )
 

@@ -1,0 +1,148 @@
+"""Codes about the model: its poses, its symmetry, its collisions, and how it compares."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nao_kin.checks.catalogue.entry import Entry
+from nao_kin.checks.finding import Severity
+
+__all__ = ["MODELS"]
+
+MODELS: Final = (
+    Entry(
+        "pose-not-finite",
+        Severity.error,
+        "The pose of a link is no number within the joints' limits.",
+        "The numbers in the file overflow when they are multiplied.",
+        '<limit lower="-1.7e308" upper="1.7e308" …/> on several slides in a row',
+        '<limit lower="-1" upper="1" …/>',
+        "Give limits and origins that a robot has.",
+    ),
+    Entry(
+        "readers-disagree",
+        Severity.error,
+        "Pinocchio and yourdfpy read the file differently (with --thorough).",
+        "Two programs then control two different robots.",
+        "a file that can be read in two ways",
+        "a file that cannot",
+        "Look at the joints between the link named and the root.",
+    ),
+    Entry(
+        "mirror-origin",
+        Severity.warning,
+        "The origin of a joint is not the mirror image of its twin's, though nearly all others are.",
+        "A sign or a figure was changed on one side only.",
+        '<joint name="LHip" …><origin xyz="0 0.05 0"/></joint><joint name="RHip" …><origin xyz="0 0.05 0"/></joint>',
+        '<joint name="LHip" …><origin xyz="0 0.05 0"/></joint><joint name="RHip" …><origin xyz="0 -0.05 0"/></joint>',
+        "Correct one of the two; ignore the code if the robot is not symmetric.",
+    ),
+    Entry(
+        "mirror-frame",
+        Severity.note,
+        "The origin of a fixed frame is not the mirror image of its twin's, though nearly all joints are.",
+        "Sensors sit where there is room for them, but a figure may also be wrong.",
+        '<origin xyz="0.02 0.03 0"/> on the left, <origin xyz="0.03 -0.03 0"/> on the right',
+        '<origin xyz="0.02 0.03 0"/> on the left, <origin xyz="0.02 -0.03 0"/> on the right',
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "mirror-axis",
+        Severity.warning,
+        "The axis of a joint is not the mirror image of its twin's, though nearly all others are.",
+        "An axis was changed on one side only.",
+        '<joint name="LKnee" …><axis xyz="0 1 0"/></joint><joint name="RKnee" …><axis xyz="1 0 0"/></joint>',
+        '<joint name="LKnee" …><axis xyz="0 1 0"/></joint><joint name="RKnee" …><axis xyz="0 1 0"/></joint>',
+        "Correct one of the two; ignore the code if the robot is not symmetric.",
+    ),
+    Entry(
+        "swapped-digits",
+        Severity.warning,
+        "A figure differs from its twin's in the order of two neighbouring digits.",
+        "One of the two was mistyped.",
+        '<joint name="LHip" …><limit upper="0.7419" …/></joint><joint name="RHip" …><limit upper="0.7491" …/></joint>',
+        '<joint name="LHip" …><limit upper="0.7419" …/></joint><joint name="RHip" …><limit upper="0.7419" …/></joint>',
+        "Look the figure up.",
+    ),
+    Entry(
+        "mirror-limit",
+        Severity.note,
+        "The range of a joint is not the mirror image of its twin's.",
+        "Real robots have such differences, and so do typing slips.",
+        "a left range of -0.3 … 1.2 and a right one of -1.2 … 0.4",
+        "a left range of -0.3 … 1.2 and a right one of -1.2 … 0.3",
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "mirror-velocity",
+        Severity.note,
+        "The velocity limit of a joint is not its twin's.",
+        "Twins usually have the same motors.",
+        'velocity="7.1" on the left, velocity="6.1" on the right',
+        'velocity="7.1" on both sides',
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "mirror-effort",
+        Severity.note,
+        "The effort limit of a joint is not its twin's.",
+        "Twins usually have the same motors.",
+        'effort="10" on the left, effort="1" on the right',
+        'effort="10" on both sides',
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "mirror-mass",
+        Severity.note,
+        "The mass of a link is not its twin's.",
+        "Twins usually weigh the same; real robots differ where a cable or a battery sits.",
+        '<mass value="0.39"/> on the left, <mass value="0.29"/> on the right',
+        '<mass value="0.39"/> on both sides',
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "mirror-inertia",
+        Severity.note,
+        "The principal moments of a link are not its twin's.",
+        "Twins usually have the same; measured robots differ a little.",
+        'ixx="0.0011" on the left, ixx="0.0017" on the right',
+        'ixx="0.0011" on both sides',
+        "Compare the two with the robot's documentation.",
+    ),
+    Entry(
+        "self-collision",
+        Severity.note,
+        "Two links that are not neighbours overlap with every joint at 0.",
+        "Planners start in collision. Boxes, cylinders and spheres are looked at, meshes are not.",
+        "two hands whose boxes meet in the middle",
+        "the same boxes, smaller",
+        "Shrink the collision shapes, or correct an origin. Fine if 0 is no posture of the robot.",
+    ),
+    Entry(
+        "often-in-collision",
+        Severity.note,
+        "The robot runs into itself at most random postures within its limits.",
+        "Planners reject most of what they try.",
+        "limits of ±3.14 on every joint of an arm that folds into its base",
+        "the limits at which the arm stops",
+        "Narrow the limits, or shrink the collision shapes.",
+    ),
+    Entry(
+        "departs-from-table",
+        Severity.error,
+        "The model moves differently from the DH table it is held against (with --dh).",
+        "Whoever computes with the table controls another robot.",
+        "nao-kin check robot.urdf --dh table.toml",
+        "nao-kin compare table.toml robot.urdf:BASE:TIP",
+        "Start at the joint named: its row, or the transform that leads to it.",
+    ),
+    Entry(
+        "departs-from-model",
+        Severity.error,
+        "The model moves differently from the URDF it is held against (with --against).",
+        "The two files describe different robots.",
+        "nao-kin check robot.urdf --against other.urdf",
+        "nao-kin compare robot.urdf:BASE:TIP other.urdf:BASE:TIP",
+        "Start at the joint named, or the transform that leads to it.",
+    ),
+)

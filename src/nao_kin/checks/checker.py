@@ -1,0 +1,272 @@
+"""One file through all rules."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from nao_kin.checks.catalogue import CATALOGUE, require_codes
+from nao_kin.checks.finding import Finding, Report
+from nao_kin.checks.rules import figures, inertia, joints, meshes, names, tree, vocabulary
+from nao_kin.checks.subject import Subject
+from nao_kin.errors import UnknownNameError, UrdfError
+from nao_kin.known import KNOWN_ROBOTS, find_known, robot_file
+from nao_kin.urdf.document import UNREADABLE, read_bytes
+from nao_kin.urdf.outline import Defect, Outline, describe
+from nao_kin.urdf.positions import Positions
+from nao_kin.urdf.safe_xml import read_tree
+from nao_kin.urdf.structure import STAGES
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+
+    from nao_kin.checks.subject import Rule
+    from nao_kin.urdf.resources import MeshRoots
+
+__all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
+
+MOST_OF_A_CODE: Final = 100
+"""Findings of one code that are listed for one file; nobody reads more, and a hostile file has millions."""
+
+_QUOTED: Final = 4 * 1024 * 1024  # [bytes] of larger files that are no XML no line is quoted
+
+TEXT_RULES: Final[tuple[Rule, ...]] = (
+    vocabulary.version,
+    vocabulary.instructions,
+    vocabulary.unknown_words,
+    vocabulary.repeated_elements,
+    names.duplicate_materials,
+    names.undefined_materials,
+    names.shared_names,
+    names.similar_names,
+    joints.axes_of_other_length,
+    joints.incomplete_limits,
+    joints.zero_ranges,
+    joints.continuous_with_limits,
+    joints.limits_in_other_units,
+    joints.mimics_of_fixed_joints,
+    figures.other_readers_numbers,
+    figures.stray_blanks,
+    figures.colours,
+    figures.lengths_in_millimetres,
+    figures.angles_in_degrees,
+    inertia.incomplete_inertials,
+    inertia.principal_moments,
+    inertia.moving_without_inertia,
+    inertia.masses_out_of_scale,
+    meshes.shapes,
+    meshes.mesh_files,
+    meshes.mesh_contents,
+)
+"""Rules on the text, for every file that is a URDF at all; each skips what another one reports."""
+
+_BREAKS_THE_TREE: Final = frozenset(
+    {
+        "no-name",
+        "duplicate-link",
+        "no-parent",
+        "no-child",
+        "unknown-parent",
+        "unknown-child",
+        "repeated-end",
+        "self-joint",
+    }
+)
+"""Defects after which it says nothing about a file that its links are no tree."""
+
+
+def check(
+    robot: str | os.PathLike[str],
+    *,
+    packages: MeshRoots = (),
+    thorough: bool = False,
+    select: Collection[str] = (),
+    ignore: Collection[str] = (),
+) -> Report:
+    """Check a URDF file, by path, or the file of a known robot, by name.
+
+    Args:
+        robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path.
+        packages: Package folders by name, or folders that hold packages, for ``package://`` in mesh names.
+        thorough: Also open every mesh, however many, and hold Pinocchio against yourdfpy at random postures.
+        select: Report these codes only; all if empty.
+        ignore: Do not report these.
+
+    Returns:
+        Every finding with its line, sorted. A file that cannot be parsed is a finding too.
+
+    Raises:
+        UrdfError: There is no such file, or it is none that can be read at all.
+        UnknownNameError: No robot or no code of that name; carries near matches.
+        MissingExtraError: The robot's files come with an optional extra.
+    """
+    require_codes((*select, *ignore))
+    path = _path_of(robot)
+    try:
+        data = read_bytes(path)
+    except UrdfError as refusal:
+        if refusal.code == UNREADABLE:
+            raise
+        return _Listing(path, select, ignore).report_refusal(refusal, b"")
+    folder = Path(path).absolute().parent
+    return check_bytes(data, path, folder=folder, packages=packages, thorough=thorough, select=select, ignore=ignore)
+
+
+def check_bytes(
+    data: bytes,
+    path: str = "<urdf>",
+    *,
+    folder: Path | None = None,
+    packages: MeshRoots = (),
+    thorough: bool = False,
+    select: Collection[str] = (),
+    ignore: Collection[str] = (),
+) -> Report:
+    """Check a URDF that is in memory.
+
+    Args:
+        data: The whole file.
+        path: How findings name it.
+        folder: Where relative mesh names start; None where the text comes from no file.
+        packages: See `check`.
+        thorough: See `check`.
+        select: See `check`.
+        ignore: See `check`.
+
+    Returns:
+        See `check`.
+
+    Raises:
+        UnknownNameError: No code of that name.
+    """
+    require_codes((*select, *ignore))
+    listing = _Listing(path, select, ignore)
+    try:
+        root = read_tree(data, path)
+    except UrdfError as refusal:
+        return listing.report_refusal(refusal, data)
+    known = KNOWN_ROBOTS.get(root.get("name", ""))
+    subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known)
+    for defects in _examination(subject):
+        listing.add(subject, defects)
+    return listing.report()
+
+
+def finding_of(subject: Subject, defect: Defect) -> Finding:
+    """A defect with its place in the text and the severity that the catalogue gives it."""
+    place = subject.positions.place(defect)
+    return Finding(
+        path=subject.path,
+        line=place.line,
+        column=place.column,
+        width=place.width,
+        code=defect.code,
+        severity=CATALOGUE[defect.code].severity,
+        element=describe(defect.at),
+        message=defect.message,
+        hint=defect.hint,
+        source=subject.positions.line_text(place.line),
+    )
+
+
+def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
+    """What every rule finds, rule by rule, as far as the findings so far let later rules mean something."""
+    outline = subject.outline
+    *early, local, connected = STAGES
+    for stage in early:
+        found = [list(_bounded(rule(outline))) for rule in stage]
+        yield from found
+        if any(found):
+            return
+    found = [list(_bounded(rule(outline))) for rule in local]
+    yield from found
+    sound = not any(found)
+    if not any(defect.code in _BREAKS_THE_TREE for defects in found for defect in defects):
+        found = [list(_bounded(rule(outline))) for rule in connected]
+        found.append(list(_bounded(tree.unreachable_links(subject))))
+        yield from found
+        sound = sound and not any(found)
+    for rule in TEXT_RULES:
+        yield _bounded(rule(subject))
+    if sound:
+        for model_rule in _model_rules(subject.thorough):
+            yield _bounded(model_rule(subject))
+
+
+def _model_rules(thorough: bool) -> tuple[Rule, ...]:
+    """The rules that compute with the model, for files without structural defects."""
+    from nao_kin.checks.rules import collision, mirror, poses  # Pinocchio: only when there is a model to compute with
+
+    rules: tuple[Rule, ...] = (
+        poses.coupled_ranges,
+        poses.coupled_limits,
+        poses.finite_poses,
+        mirror.geometry_of_twins,
+        mirror.limits_of_twins,
+        mirror.inertia_of_twins,
+        collision.self_collisions,
+    )
+    return (*rules, poses.readers_agree) if thorough else rules
+
+
+def _bounded(defects: Iterator[Defect]) -> Iterator[Defect]:
+    """The first defects of a rule, up to one more than is listed of the code that it finds most."""
+    counts: Counter[str] = Counter()
+    for defect in defects:
+        yield defect
+        counts[defect.code] += 1
+        if counts[defect.code] > MOST_OF_A_CODE:
+            return
+
+
+@dataclass
+class _Listing:
+    """The findings of one file as they come in."""
+
+    path: str
+    select: Collection[str]
+    ignore: Collection[str]
+    findings: list[Finding] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+
+    def add(self, subject: Subject, defects: Iterable[Defect]) -> None:
+        """Takes up the wanted ones, of each code as many as are listed."""
+        for defect in defects:
+            if self._wanted(defect.code):
+                self.counts[defect.code] += 1
+                if self.counts[defect.code] <= MOST_OF_A_CODE:
+                    self.findings.append(finding_of(subject, defect))
+
+    def report(self) -> Report:
+        """All that has come in."""
+        crowded = [(self.path, code) for code, count in self.counts.items() if count > MOST_OF_A_CODE]
+        return Report.of([self.path], self.findings, crowded)
+
+    def report_refusal(self, refusal: UrdfError, data: bytes) -> Report:
+        """The report on a file that never became a tree."""
+        lines = data.decode("utf-8", "replace").split("\n") if refusal.line and len(data) < _QUOTED else []
+        source = lines[refusal.line - 1].rstrip("\r") if refusal.line and refusal.line <= len(lines) else ""
+        code, severity = refusal.code, CATALOGUE[refusal.code].severity
+        if self._wanted(code):
+            self.findings.append(
+                Finding(self.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
+            )
+        return self.report()
+
+    def _wanted(self, code: str) -> bool:
+        return code not in self.ignore and (not self.select or code in self.select)
+
+
+def _path_of(robot: str | os.PathLike[str]) -> str:
+    """The path that is meant, by the rule of `nao_kin.load`."""
+    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
+        try:
+            return os.fspath(robot_file(find_known(robot)))
+        except UnknownNameError:
+            if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
+                return robot
+            raise
+    return os.fspath(robot)
