@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from nao_kin.documents.claim import Claim, Judgement
 
-__all__ = ["Ledger", "claim_names", "claims", "ledger"]
+__all__ = ["Ledger", "claims", "ledger"]
 
 _MODULES: Final = (
     # 000, Bischoff 2016
@@ -132,11 +132,6 @@ def claims(name: str | None = None, *, document: str | None = None) -> tuple[Cla
         return (by_name[name],)
     except KeyError:
         raise UnknownNameError("claim", name, by_name) from None
-
-
-def claim_names() -> tuple[str, ...]:
-    """The names of all claims."""
-    return tuple(claim.id for claim in claims())
 
 
 def ledger(claim: str | None = None, *, document: str | None = None, failing: bool = False) -> Ledger:
