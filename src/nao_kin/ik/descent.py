@@ -234,30 +234,54 @@ def _descend(
             return SOLVED if reached else STALLED
         if iteration == allowed:
             break
-        if memory is not None and settings[RULE] >= CCD:
-            rule, closeness = int(settings[RULE]), settings[CLOSENESS]
-            sweep(rule, joints, limits, coupled, kind, goal, closeness, q, axes, tip, memory)
-            outcome[ITERATIONS] += 1.0
-            continue
-        jacobian(joints, axes, tip, full)
         if memory is None:
+            jacobian(joints, axes, tip, full)
             shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
             hold(limits, q, e, J)
             levenberg_marquardt(J, e, settings[GAINS:], A, y, step)
+        elif settings[RULE] >= CCD:
+            sweep(int(settings[RULE]), joints, limits, coupled, kind, goal, settings[CLOSENESS], q, axes, tip, memory)
+            outcome[ITERATIONS] += 1.0
+            continue
         else:
-            recast_rows(int(settings[ORIENTATION_ERROR]), goal, tip, raw, full)
-            shape_rows(kind, goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
-            hold(limits, q, e, J)
-            steps, trial = memory[: 2 * n].reshape(2, n), memory[2 * n : 3 * n]
-            if update(int(settings[RULE]), J, e, settings[GAINS:], A, y, steps) == 2:
-                _keep_better(joints, limits, coupled, settings, goal, q, steps, trial, axes, tip, raw)
-            for k in range(n):
-                step[k] = steps[0, k]
+            _propose(joints, limits, coupled, settings, goal, q, step, axes, tip, raw, full, e, J, y, A, memory)
         if not _take_step(step, settings[LARGEST_STEP], q):
             return NOT_FINITE
         move_inside(q, limits, coupled)
         outcome[ITERATIONS] += 1.0
     return SOLVED if reached else BUDGET_SPENT
+
+
+@leaf_jit
+def _propose(
+    joints: Floats,
+    limits: Floats,
+    coupled: Floats,
+    settings: Floats,
+    goal: Floats,
+    q: Floats,
+    step: Floats,
+    axes: Floats,
+    tip: Floats,
+    raw: Floats,
+    full: Floats,
+    e: Floats,
+    J: Floats,
+    y: Floats,
+    A: Floats,
+    memory: Floats,
+) -> None:
+    """Writes the step of any update rule; `e` and `J` are the rows of `raw` and `full` that the target binds."""
+    n = q.shape[0]
+    jacobian(joints, axes, tip, full)
+    recast_rows(int(settings[ORIENTATION_ERROR]), goal, tip, raw, full)
+    shape_rows(int(settings[KIND]), goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
+    hold(limits, q, e, J)
+    steps = memory[: 2 * n].reshape(2, n)
+    if update(int(settings[RULE]), J, e, settings[GAINS:], A, y, steps) == 2:
+        _keep_better(joints, limits, coupled, settings, goal, q, steps, memory[2 * n : 3 * n], axes, tip, raw)
+    for k in range(n):
+        step[k] = steps[0, k]
 
 
 @leaf_jit

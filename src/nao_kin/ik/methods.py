@@ -130,11 +130,8 @@ def solve(
             matches.
     """
     if isinstance(chain, Tree):
-        if engine != "compiled":
-            raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
-        if jump is not None:
-            raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
         options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
+        _refuse_for_trees(engine, jump)
         return solve_tree(chain, cast("Any", target), q0, trace=trace, parameters=parameters, **options)
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
@@ -166,6 +163,14 @@ def solve(
     if jump is not None:
         run.start, run.jump = start.copy(), allowed  # the caller may go on with theirs
     return judge(problem, run)
+
+
+def _refuse_for_trees(engine: str, jump: float | None) -> None:
+    """Raises for the options of `solve` that several tips do not have."""
+    if engine != "compiled":
+        raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
+    if jump is not None:
+        raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
 
 
 def prepared(
