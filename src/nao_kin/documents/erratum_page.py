@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from typing import TYPE_CHECKING, Final
 
 from latex2mathml.converter import convert
@@ -80,12 +81,16 @@ def _article(judgement: Judgement) -> str:
     )
 
 
+_WORD: Final = re.compile(r"(?<!\\mathrm\{)(?<![\\\w])[A-Z][a-z]+[A-Z]\w*")
+"""A name such as CameraX, which would otherwise be set as the product of its letters."""
+
+
 def _text(label: str, text: str, judgement: Judgement) -> str:
     """A text, or a formula as MathML where it has LaTeX."""
     correction = judgement.claim.correction if judgement.verdict is Verdict.fails else None
     latex = {"printed": judgement.claim.latex, "corrected": correction.latex if correction else ""}.get(label, "")
     if latex:
-        return str(convert(latex, display="block"))
+        return str(convert(_WORD.sub(r"\\mathrm{\g<0>}", latex), display="block"))
     if label in ("printed", "corrected") or "\n" in text:
         return f"<pre>{html.escape(text)}</pre>"
     return html.escape(text)
