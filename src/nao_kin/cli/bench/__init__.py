@@ -11,6 +11,7 @@ from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.practicum import practicum
+from nao_kin.cli.bench.sixr import sixr
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
 
@@ -31,5 +32,6 @@ bench.command()(explain)
 bench.command()(methods)
 bench.command()(practicum)
 bench.command()(closed)
+bench.command()(sixr)
 bench.command()(startup)
 bench.command()(tips)
