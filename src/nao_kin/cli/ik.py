@@ -29,7 +29,7 @@ def ik(
     rpy: Annotated[Triple | None, typer.Option(help="Wanted roll pitch yaw [rad]; without it any will do.")] = None,
     posture: Annotated[list[str] | None, typer.Option(help="NAME=VALUE, repeated: the target is its pose.")] = None,
     deg: Annotated[bool, typer.Option("--deg", help="--rpy, --posture and --lock are in degrees.")] = False,
-    method: Annotated[str, typer.Option(help="A name in nao_kin.METHODS.")] = "lm",
+    method: Annotated[str, typer.Option(help="A name in nao_kin.METHODS, or closed.")] = "lm",
     seed: Annotated[int, typer.Option(help="Seed of the stored starts.")] = 0,
     all: Annotated[bool, typer.Option("--all", help="Every solution, by closed form.")] = False,
     lock: Annotated[list[str] | None, typer.Option(help="With --all, NAME=VALUE, repeated: a joint's value.")] = None,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, cast, overload
 
 import numpy as np
 import pinocchio as pin
@@ -30,7 +31,10 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.ik.tree_problem import TreeResult
 
-__all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
+__all__ = ["CLOSED", "METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
+
+CLOSED: Final = "closed"
+"""What `solve` takes beside the names in `METHODS`, for the closed form of a chain that has one."""
 
 Engine = Literal["compiled", "reference"]
 
@@ -109,7 +113,8 @@ def solve(
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
         q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
             inside and the result says so. By default all zeros, moved inside.
-        method: A name in `METHODS`.
+        method: A name in `METHODS`; or ``"closed"`` for the branch of the chain's closed form that is nearest to the
+            start, see `nao_kin.solve_all`, which has nothing to iterate and so takes no budget, trace or parameters.
         tolerances: When the target counts as reached.
         budget: How long to try.
         seed: For the stored starts; the same call gives the same result.
@@ -145,6 +150,9 @@ def solve(
     else:
         wanted = Target.of(target)
     problem = Problem(chain, wanted, tolerances)
+    if method == CLOSED:
+        iterative = {"budget": budget, "trace": trace or None, "parameters": parameters}
+        return _by_closed_form(problem, Target.of(target), q0, jump, iterative, engine)
     if engine != "compiled":
         problem = Problem(chain, Target.of(target), tolerances)
         return judge(problem, _run_in_python(problem, q0, method, budget, seed, trace, engine, parameters, jump))
@@ -163,6 +171,20 @@ def solve(
     if jump is not None:
         run.start, run.jump = start, allowed
     return judge(problem, run)
+
+
+def _by_closed_form(
+    problem: Problem, target: Target, q0: Any, jump: float | None, iterative: Mapping[str, Any], engine: str
+) -> IKResult:
+    """The nearest branch of the closed form; closed forms build on this package, hence the import when asked for."""
+    for option, value in iterative.items():
+        if value is not None:
+            raise InvalidInputError(option, f"none for method {CLOSED!r}, which does not iterate", repr(value)[:40])
+    if engine != "compiled":
+        raise InvalidInputError("engine", f"'compiled' for method {CLOSED!r}", repr(engine))
+    solver = importlib.import_module("nao_kin.analytic.choosing")
+    allowed = None if jump is None else _positive(jump)
+    return cast("IKResult", solver.solve_closed(Problem(problem.chain, target, problem.tolerances), q0, allowed))
 
 
 def prepared(

@@ -189,7 +189,7 @@ def _missing(chain: Any, found: _Rows, goals: Floats, starts: int, rng: np.rando
     from nao_kin.cli.bench.all_solutions import apart, least_singular_value, multi_start
 
     missing, free = 0, np.ones(6, dtype=np.bool_)
-    for i, solutions in enumerate(multi_start(chain, "pose", goals, np.full((1, 6), np.nan), starts, rng)):
+    for i, solutions in enumerate(multi_start(chain, "pose", goals, np.full((len(goals), 6), np.nan), starts, rng)):
         if len(solutions):
             values = least_singular_value("pose", goals[[i] * len(solutions)], chain, solutions, free)
             known = found.q[i][found.exists[i]]
