@@ -131,8 +131,8 @@ def test_names_and_chains_that_do_not_exist() -> None:
     chain = chain_of("nao", "left_arm")
     with pytest.raises(UnknownNameError, match="Did you mean 'LElbowYaw'"):
         nk.solve_all(chain, np.eye(4), locked={"LElbowYa": 0.0})
-    with pytest.raises(InvalidInputError, match=r"6 joints|as "):
-        nk.solve_all(nk.load("jaco2").chain("arm"), np.eye(4))
+    with pytest.raises(InvalidInputError, match=r"joints where the closed forms have"):
+        nk.solve_all(nk.load("nao").chain("l_sole", "r_sole"), np.eye(4))
     with pytest.raises(InvalidInputError, match=r"robot\.chain"):
         nk.solve_all("nao", np.eye(4))
 

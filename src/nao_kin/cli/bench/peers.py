@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nao_kin.cli.bench.contest import Task
     from nao_kin.urdf_chain import UrdfChain
 
-__all__ = ["PEERS", "Peer", "Unsuited", "installed_peers"]
+__all__ = ["PEERS", "Peer", "Unsuited", "installed_peers", "product_of_exponentials"]
 
 
 class Unsuited(Exception):  # noqa: N818 - a refusal, not an error
@@ -117,7 +117,7 @@ def _ssik(task: Task) -> Contender:
 def _eaik(task: Task) -> Contender:
     """All closed-form branches, the first one inside the limits; it takes axes H and points P and no tool rotation."""
     _only_poses(task)
-    H, P, R_last_tip = _product_of_exponentials(task.chain)
+    H, P, R_last_tip = product_of_exponentials(task.chain)
     robot = importlib.import_module("eaik.IK_HP").HPRobot(H, P)
     if not robot.hasKnownDecomposition():
         raise Unsuited("no known decomposition of this arm")
@@ -137,7 +137,7 @@ def _ik_geo(task: Task) -> Contender:
     _only_poses(task)
     if task.chain.robot.name not in ("ur3", "ur5", "ur10"):
         raise Unsuited("it must be told the class of an arm, known here for the UR arms only")
-    H, P, R_last_tip = _product_of_exponentials(task.chain)
+    H, P, R_last_tip = product_of_exponentials(task.chain)
     robot = importlib.import_module("ik_geo").Robot.three_parallel_two_intersecting(H.tolist(), P.tolist())
     inside = _first_inside(task.chain)
 
@@ -205,7 +205,7 @@ def _matrix(R: Floats, p: Floats) -> Floats:
     return T
 
 
-def _product_of_exponentials(chain: UrdfChain) -> tuple[Floats, Floats, Floats]:
+def product_of_exponentials(chain: UrdfChain) -> tuple[Floats, Floats, Floats]:
     """Joint axes (6, 3) and steps between points on them, the tip last (7, 3), in base axes, and the tip's rotation."""
     path = chain.joint_path
     if len(path.columns) != 6 or path.prismatic.any() or len(path.lower) != 6:
