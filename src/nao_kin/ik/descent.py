@@ -33,7 +33,6 @@ from nao_kin.ik.layout import (
     MAX_ITERATIONS,
     MERIT,
     NOT_FINITE,
-    ORIENTATION_ERROR,
     OUT_OF_REACH,
     OUTCOME,
     PATIENCE,
@@ -51,8 +50,8 @@ from nao_kin.ik.layout import (
     WEIGHTS,
 )
 from nao_kin.ik.loop import PATIENCE_ONCE_REACHED, POLISHED, REACHED
-from nao_kin.ik.orientation import recast_rows
-from nao_kin.ik.rules import levenberg_marquardt, update
+from nao_kin.ik.proposing import propose, take_step, weighted_merit
+from nao_kin.ik.rules import levenberg_marquardt
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.limits import hold, move_inside
 from nao_kin.kernels.motion import jacobian, place
@@ -215,10 +214,9 @@ def _descend(
     rest = rest[TIP + 6 + 6 * n :]
     # The rows that the target binds: those of the position, of the rotation, or all.
     first, last = 3 if kind == ORIENTATION else 0, 3 if kind == POSITION else 6
-    rows = last - first
-    e, J, y, A = raw[first:last], full[first:last], rest[:rows], rest[6 : 6 + rows * rows].reshape(rows, rows)
-    previous, halved, waited, reached = math.inf, math.inf, 0, False
-    allowed = int(settings[MAX_ITERATIONS])
+    rows, e, J = last - first, raw[first:last], full[first:last]
+    y, A = rest[:rows], rest[6 : 6 + rows * rows].reshape(rows, rows)
+    previous, halved, waited, reached, allowed = math.inf, math.inf, 0, False, int(settings[MAX_ITERATIONS])
     outcome[STARTS] += 1.0
     for iteration in range(allowed + 1):
         place(joints, q, axes, tip)
@@ -244,74 +242,12 @@ def _descend(
             outcome[ITERATIONS] += 1.0
             continue
         else:
-            _propose(joints, limits, coupled, settings, goal, q, step, axes, tip, raw, full, e, J, y, A, memory)
-        if not _take_step(step, settings[LARGEST_STEP], q):
+            propose(joints, limits, coupled, settings, goal, q, step, axes, tip, raw, full, e, J, y, A, memory)
+        if not take_step(step, settings[LARGEST_STEP], q):
             return NOT_FINITE
         move_inside(q, limits, coupled)
         outcome[ITERATIONS] += 1.0
     return SOLVED if reached else BUDGET_SPENT
-
-
-@leaf_jit
-def _propose(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    settings: Floats,
-    goal: Floats,
-    q: Floats,
-    step: Floats,
-    axes: Floats,
-    tip: Floats,
-    raw: Floats,
-    full: Floats,
-    e: Floats,
-    J: Floats,
-    y: Floats,
-    A: Floats,
-    memory: Floats,
-) -> None:
-    """Writes the step of any update rule; `e` and `J` are the rows of `raw` and `full` that the target binds."""
-    n = q.shape[0]
-    jacobian(joints, axes, tip, full)
-    recast_rows(int(settings[ORIENTATION_ERROR]), goal, tip, raw, full)
-    shape_rows(int(settings[KIND]), goal, settings[WEIGHTS : WEIGHTS + 6], tip, raw, full)
-    hold(limits, q, e, J)
-    steps = memory[: 2 * n].reshape(2, n)
-    if update(int(settings[RULE]), J, e, settings[GAINS:], A, y, steps) == 2:
-        _keep_better(joints, limits, coupled, settings, goal, q, steps, memory[2 * n : 3 * n], axes, tip, raw)
-    for k in range(n):
-        step[k] = steps[0, k]
-
-
-@leaf_jit
-def _keep_better(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    settings: Floats,
-    goal: Floats,
-    q: Floats,
-    steps: Floats,
-    trial: Floats,
-    axes: Floats,
-    tip: Floats,
-    raw: Floats,
-) -> None:
-    """Puts that row of `steps` (2, n) first which leads closer to the goal; the last three are scratch."""
-    least = math.inf
-    for row in range(2):
-        for k in range(q.shape[0]):
-            trial[k] = q[k]
-        if _take_step(steps[row], settings[LARGEST_STEP], trial):
-            move_inside(trial, limits, coupled)
-            place(joints, trial, axes, tip)
-            raw_error(int(settings[KIND]), goal, tip, raw)
-            merit = _merit(settings, raw)
-            if merit < least:
-                least = merit
-                for k in range(q.shape[0]):
-                    steps[0, k] = steps[row, k]
 
 
 @leaf_jit
@@ -321,7 +257,7 @@ def _note(settings: Floats, q: Floats, raw: Floats, outcome: Floats, trace: Floa
     Whether the target is reached is asked of the errors themselves, on every axis that is not left free.
     """
     n = q.shape[0]
-    position, rotation, merit = 0.0, 0.0, _merit(settings, raw)
+    position, rotation, merit = 0.0, 0.0, weighted_merit(settings, raw)
     for i in range(3):
         position += raw[i] ** 2 if settings[WEIGHTS + i] > 0.0 else 0.0
         rotation += raw[3 + i] ** 2 if settings[WEIGHTS + 3 + i] > 0.0 else 0.0
@@ -337,38 +273,3 @@ def _note(settings: Floats, q: Floats, raw: Floats, outcome: Floats, trace: Floa
         trace[row, n], trace[row, n + 1], trace[row, n + 2] = position, rotation, outcome[STARTS] - 1.0
     within = position <= REACHED * settings[POSITION_TOLERANCE] and rotation <= REACHED * settings[ROTATION_TOLERANCE]
     return merit, within
-
-
-@leaf_jit
-def _merit(settings: Floats, raw: Floats) -> float:
-    """The larger weighted error in units of its tolerance."""
-    position, rotation = 0.0, 0.0
-    for i in range(3):
-        position += (settings[WEIGHTS + i] * raw[i]) ** 2
-        rotation += (settings[WEIGHTS + 3 + i] * raw[3 + i]) ** 2
-    return max(
-        _ratio(math.sqrt(position), settings[POSITION_TOLERANCE]),
-        _ratio(math.sqrt(rotation), settings[ROTATION_TOLERANCE]),
-    )
-
-
-@leaf_jit
-def _ratio(error: float, tolerance: float) -> float:
-    if tolerance > 0.0:
-        return error / tolerance
-    return 0.0 if error == 0.0 else math.inf
-
-
-@leaf_jit
-def _take_step(step: Floats, largest_step: float, q: Floats) -> bool:
-    """Adds the step to q, scaled down to the largest one allowed; False, and q as it was, where it is not finite."""
-    largest, nothing = 0.0, 0.0
-    for k in range(q.shape[0]):
-        largest = max(largest, abs(step[k]))
-        nothing += 0.0 * step[k]  # NaN of NaN and of infinity
-    if nothing != 0.0:
-        return False
-    scale = largest_step / largest if largest > largest_step else 1.0
-    for k in range(q.shape[0]):
-        q[k] += scale * step[k]
-    return True
