@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -162,9 +163,11 @@ def _inferior(f: Figures) -> tuple[bool, str]:
     """Thesis 4.2: FTL and CCD are variations of the others or inferior to them."""
     names = ("fabrik", "ftl", "ccd", "lm")
     found = {name: _pick(f.alone, name, "position") for name in names}
-    better = [n for n in ("ftl", "ccd") if found[n].success > max(found["fabrik"].success, found["lm"].success)]
+    best = max(found["fabrik"].success, found["lm"].success)
+    chance = 2.0 * math.sqrt(2.0 * best * (100.0 - best) / len(found["fabrik"].solved))  # two standard deviations [%]
+    better = [name for name in ("ftl", "ccd") if found[name].success > best + chance]
     told = ", ".join(f"{name} {o.success:.0f} % in {_micro(o):.0f} µs" for name, o in found.items())
-    return not better, f"From one start on the NAO arm: {told}."
+    return not better, f"From one start on the NAO arm: {told}; up to {chance:.0f} % would be chance."
 
 
 def _small_gain(f: Figures) -> tuple[bool, str]:
