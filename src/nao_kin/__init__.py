@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.trajectory.trajectory import Trajectory as Trajectory
     from nao_kin.tree import Tree as Tree
     from nao_kin.urdf_chain import UrdfChain as UrdfChain
     from nao_kin.view.export import export_html as export_html
@@ -77,6 +78,7 @@ _HOME = {
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
+    "Trajectory": "trajectory.trajectory",
     "Tree": "tree",
     "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",

@@ -1,0 +1,7 @@
+"""Motion over time: joint values at instants, and what makes them."""
+
+from __future__ import annotations
+
+from nao_kin.trajectory.trajectory import Trajectory
+
+__all__ = ["Trajectory"]
