@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
+from nao_kin.analytic.certifying import MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.chain import configuration
@@ -25,12 +26,8 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["SAME", "Solutions", "in_window", "nearest", "slack_of", "solve_all", "sorted_out"]
+__all__ = ["Solutions", "nearest", "slack_of", "solve_all", "sorted_out"]
 
-SAME: Final = 1e-9
-"""Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
-
-_MEETS: Final = 1e-10  # [m, rad]
 _FEW: Final = 4  # solutions whose joints a terminal has room for with all their digits
 _TURN: Final = 2.0 * math.pi
 _MOST_TURNS: Final = 1000.0  # a range wider than this is a file's way to say that there is no limit
@@ -137,21 +134,9 @@ def _judged(found: Matched, problem: Problem, slack: float, *, windings: bool = 
         q = found.template.copy()
         q[list(found.columns)] = row[:n]
         label = form.label(int(row[n]), int(row[n + 1]))
-        placed = in_window(problem.chain, q[None, :])[0]
-        for wound in _windings(problem.chain, placed, problem.tolerances.limits) if windings else [placed]:
+        inside = placed(q, found.ranges)
+        for wound in _windings(problem.chain, inside, problem.tolerances.limits) if windings else [inside]:
             yield judge(problem, Run(wound, Status.SOLVED, branch=label))
-
-
-def in_window(chain: Chain, Q: Floats) -> Floats:
-    """Joints (N, n), those outside their limits moved by whole turns to as near to the limits' middle as they go."""
-    moved = Q.copy()
-    for k, joint in enumerate(chain.joints):
-        lower, upper = chain.lower[k], chain.upper[k]
-        if joint.kind != "prismatic" and upper - lower < _MOST_TURNS * _TURN:
-            outside = (Q[:, k] < lower) | (Q[:, k] > upper)
-            turns = np.round((0.5 * (lower + upper) - Q[:, k]) / _TURN)
-            moved[:, k] += np.where(outside, turns * _TURN, 0.0)
-    return moved
 
 
 def _windings(chain: Chain, q: Floats, tolerance: float) -> Iterator[Floats]:
@@ -175,7 +160,7 @@ def _kept(results: Iterable[IKResult]) -> list[IKResult]:
     though it may be within tolerance.
     """
     reached = [result for result in results if result.status in _REACHED]
-    bound = max(_MEETS, 1e3 * min((_error(result) for result in reached), default=0.0))
+    bound = max(MEETS, 1e3 * min((_error(result) for result in reached), default=0.0))
     good: list[IKResult] = []
     for result in reached:
         if _error(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):

@@ -184,8 +184,8 @@ class Wanted:
             return cls(Target("position", np.eye(4)), given)
         raise InvalidInputError("targets", expected, f"shape {given.shape} of type {given.dtype}")
 
-    def goals(self, chunk: slice) -> Floats:
-        """The goals (k, 4, 4) of a chunk, a copy; compiled code checks the numbers."""
+    def goals(self, chunk: slice | NDArray[np.int64]) -> Floats:
+        """The goals (k, 4, 4) of a chunk or of some rows, a copy; compiled code checks the numbers."""
         part = np.array(self.given[chunk], dtype=np.float64, order="C")
         if part.ndim == 3:
             return part
