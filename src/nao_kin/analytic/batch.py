@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["BatchSolutions", "solve_all_batch"]
+__all__ = ["BatchSolutions", "certified", "solve_all_batch"]
 
 _BLOCK: Final = 1024  # targets at a time: what lies between the kernels stays in the processor's cache
 
@@ -113,22 +113,35 @@ def solve_all_batch(
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
     found = matched(chain, wanted.first, locked)
-    N, B, n = len(wanted.given), found.request.branches, len(chain.joints)
+    N = len(wanted.given)
     if len(found.given) not in (1, N):
         raise InvalidInputError(
             "locked", f"one value a joint, or one for each of the {N} targets", f"{len(found.given)}"
         )
-    ranges, certificate = found.ranges, Certificate.blank(N, B, n)
-    for start in range(0, N, _BLOCK):
-        block = slice(start, min(start + _BLOCK, N))
-        goals = wanted.goals(block)
-        _check(goals, wanted.first, start)
-        written = _written(found, goals, block, slack_of(tolerances))
-        counted, kind = wanted.first.counts, KINDS[wanted.first.kind]
-        certify(chain.joint_path, ranges, kind, counted, goals, written, tolerances, certificate.part(block))
+    certificate = certified(chain, found, wanted, slice(0, N), tolerances, slack_of(tolerances))
     result = BatchSolutions(chain, found.form, *certificate)
     _audit(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
     return result
+
+
+def certified(
+    chain: Chain, found: Matched, wanted: Wanted, rows: slice, tolerances: Tolerances, slack: float
+) -> Certificate:
+    """What a closed form finds for some rows of the targets, measured; a slack [m] for branches at the border.
+
+    Raises:
+        InvalidInputError: A row that is no target.
+    """
+    certificate = Certificate.blank(rows.stop - rows.start, found.request.branches, len(chain.joints))
+    counted, kind = wanted.first.counts, KINDS[wanted.first.kind]
+    for start in range(rows.start, rows.stop, _BLOCK):
+        block = slice(start, min(start + _BLOCK, rows.stop))
+        goals = wanted.goals(block)
+        _check(goals, wanted.first, start)
+        written = _written(found, goals, block, slack)
+        part = certificate.part(slice(start - rows.start, block.stop - rows.start))
+        certify(chain.joint_path, found.ranges, kind, counted, goals, written, tolerances, part)
+    return certificate
 
 
 def _written(found: Matched, goals: Floats, block: slice, slack: float) -> Written:

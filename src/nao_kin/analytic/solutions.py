@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["Solutions", "nearest", "slack_of", "solve_all", "sorted_out"]
+__all__ = ["Solutions", "error_of", "judged", "nearest", "slack_of", "solve_all", "sorted_out"]
 
 _FEW: Final = 4  # solutions whose joints a terminal has room for with all their digits
 _TURN: Final = 2.0 * math.pi
@@ -108,9 +108,9 @@ def solve_all(
     found = matched(chain, wanted, locked)
     if len(found.given) != 1:
         raise InvalidInputError("locked", "one number a joint; nao_kin.solve_all_batch takes arrays", "an array")
-    solutions = sorted_out(_judged(found, problem, slack_of(tolerances), windings=windings))
+    solutions = sorted_out(judged(found, problem, slack_of(tolerances), windings=windings))
     if not solutions:
-        solutions.reason = _miss(list(_judged(found, problem, math.inf)))
+        solutions.reason = _miss(list(judged(found, problem, math.inf)))
     return solutions
 
 
@@ -125,7 +125,8 @@ def slack_of(tolerances: Tolerances) -> float:
     return 2.0 * (tolerances.position + tolerances.rotation) + 1e-12
 
 
-def _judged(found: Matched, problem: Problem, slack: float, *, windings: bool = False) -> Iterator[IKResult]:
+def judged(found: Matched, problem: Problem, slack: float, *, windings: bool = False) -> Iterator[IKResult]:
+    """What a closed form writes for a problem, each measured by the judge; a slack [m] for branches at the border."""
     form, n = found.form, found.form.joints
     rows = np.empty((found.request.branches, n + 2))
     goal = np.ascontiguousarray(problem.target.goal)
@@ -160,22 +161,23 @@ def _kept(results: Iterable[IKResult]) -> list[IKResult]:
     though it may be within tolerance.
     """
     reached = [result for result in results if result.status in _REACHED]
-    bound = max(MEETS, 1e3 * min((_error(result) for result in reached), default=0.0))
+    bound = max(MEETS, 1e3 * min((error_of(result) for result in reached), default=0.0))
     good: list[IKResult] = []
     for result in reached:
-        if _error(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
+        if error_of(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
             good.append(result)
     return good
 
 
-def _error(result: IKResult) -> float:
+def error_of(result: IKResult) -> float:
+    """The larger of the errors that the target does not leave free [m, rad]."""
     return max(result.position_error or 0.0, result.rotation_error or 0.0)
 
 
 def _miss(border: Sequence[IKResult]) -> str:
     if not border:
         return "The closed form has no branch for this target."
-    best = min(border, key=_error)
+    best = min(border, key=error_of)
     parts = [] if best.position_error is None else [f"{best.position_error:.3g} m"]
     parts += [] if best.rotation_error is None else [f"{best.rotation_error:.3g} rad"]
     return f"No joints reach the target: the nearest of the closed form's branches misses by {' and '.join(parts)}."
