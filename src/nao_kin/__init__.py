@@ -32,13 +32,10 @@ if TYPE_CHECKING:
     from nao_kin.documents.ledger import ledger as ledger
     from nao_kin.errors import NaoKinError as NaoKinError
     from nao_kin.ik.along import FollowResult as FollowResult
-    from nao_kin.ik.along import follow as follow
     from nao_kin.ik.along import project_to_reach as project_to_reach
     from nao_kin.ik.batch import BatchResult as BatchResult
-    from nao_kin.ik.batch import solve_batch as solve_batch
     from nao_kin.ik.catalogue import METHODS as METHODS
     from nao_kin.ik.loop import Budget as Budget
-    from nao_kin.ik.methods import solve as solve
     from nao_kin.ik.problem import IKResult as IKResult
     from nao_kin.ik.problem import Status as Status
     from nao_kin.ik.target import Target as Target
@@ -47,6 +44,9 @@ if TYPE_CHECKING:
     from nao_kin.known import robot_names as robot_names
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
+    from nao_kin.solving import follow as follow
+    from nao_kin.solving import solve as solve
+    from nao_kin.solving import solve_batch as solve_batch
     from nao_kin.tolerances import Tolerances as Tolerances
     from nao_kin.trajectory.trajectory import Trajectory as Trajectory
     from nao_kin.tree import Tree as Tree
@@ -90,7 +90,7 @@ _HOME = {
     "document_chain": "documents.chains",
     "document_chain_names": "documents.chains",
     "export_html": "view.export",
-    "follow": "ik.along",
+    "follow": "solving",
     "ledger": "documents.ledger",
     "load": "robot",
     "nearest": "analytic.solutions",
@@ -98,10 +98,10 @@ _HOME = {
     "reachability": "workspace.mapping",
     "robot_names": "known",
     "show": "view.export",
-    "solve": "ik.methods",
+    "solve": "solving",
     "solve_all": "analytic.solutions",
     "solve_all_batch": "analytic.batch",
-    "solve_batch": "ik.batch",
+    "solve_batch": "solving",
     "solve_tree": "ik.tree",
     "to_dh": "dh_from_chain",
 }

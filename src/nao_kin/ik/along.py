@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -17,14 +17,18 @@ from nao_kin.ik.target import Target, TargetLike
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
+    from nao_kin.ik.problem import IKResult
 
-__all__ = ["FollowResult", "follow", "project_to_reach"]
+    Start: TypeAlias = ArrayLike | Mapping[str, float]
+    Step: TypeAlias = Callable[[Target, Start], IKResult]
+
+__all__ = ["FollowResult", "follow", "followed", "project_to_reach"]
 
 _ONE_START = Budget(restarts=0, largest_step=0.2)  # another start would be another branch
 
@@ -68,23 +72,16 @@ def follow(
     method: str = "lm",
     tolerances: Tolerances = TOLERANCES,
 ) -> FollowResult:
-    """Joints along a path, each sample solved from the one before: one branch, never a new start.
+    """`nao_kin.follow`, which says what the arguments are, by a method that iterates."""
 
-    It ends early, and says at which sample and why, where a sample is not reached from its predecessor or where a joint
-    would have to move by more than `jump`.
+    def step(target: Target, start: Start) -> IKResult:
+        return solve(chain, target, start, method=method, tolerances=tolerances, budget=_ONE_START)
 
-    Args:
-        chain: The chain.
-        path: Targets in order, as `nao_kin.solve` takes them.
-        q0: Start (n,) or posture, near the first sample.
-        jump: Largest move of a joint between consecutive samples [rad or m]; the move to the first one is free.
-        method: A name in `nao_kin.METHODS`.
-        tolerances: When a sample counts as reached.
+    return followed(chain, path, q0, jump, step)
 
-    Raises:
-        InvalidInputError: An empty path, a bad target, or a jump that is not positive.
-        UnknownNameError: No such method or joint.
-    """
+
+def followed(chain: Chain, path: Iterable[TargetLike], q0: Start, jump: float, step: Step) -> FollowResult:
+    """`follow` by any solver, which takes a target and the joints to come from."""
     targets = [Target.of(target) for target in path]
     if not targets:
         raise InvalidInputError("path", "at least one target", "none")
@@ -92,9 +89,10 @@ def follow(
         raise InvalidInputError("jump", "a number > 0", repr(jump))
     reached: list[Floats] = []
     largest, largest_at, position, rotation = 0.0, 0, 0.0, 0.0
-    status, reason, start = Status.SOLVED, f"All {len(targets)} samples are reached.", q0
+    start: Start = q0
+    status, reason = Status.SOLVED, f"All {len(targets)} samples are reached."
     for index, target in enumerate(targets):
-        result = solve(chain, target, start, method=method, tolerances=tolerances, budget=_ONE_START)
+        result = step(target, start)
         if not result.solved:
             status, reason = result.status, f"Sample {index} is not reached: {result.message}"
             break
