@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from nao_kin.ik.problem import IKResult
     from nao_kin.ik.target import Target
 
-__all__ = ["Cause", "cause_of", "singular_values"]
+__all__ = ["NEAR_SINGULAR", "Cause", "cause_of", "singular_values"]
 
 NEAR_SINGULAR: Final = 0.02
 """Least share of the smallest singular value in the largest at which an arm still counts as regular: below it a joint

@@ -86,15 +86,13 @@ def demand_of(
         trajectory.joint_names,
         speed,
         speed_at + 1,
-        frozen(own if max_velocity is None else per_axis(max_velocity, "max_velocity", count)),
+        frozen(own if max_velocity is None else per_axis(max_velocity, "max_velocity", count, endless=True)),
         acceleration,
         acceleration_at + 1,
-        frozen(np.full(count, np.inf) if max_acceleration is None else _given(max_acceleration, count)),
+        frozen(
+            per_axis(np.inf if max_acceleration is None else max_acceleration, "max_acceleration", count, endless=True)
+        ),
     )
-
-
-def _given(limit: ArrayLike, count: int) -> Floats:
-    return per_axis(limit, "max_acceleration", count)
 
 
 def _largest(rates: Floats, count: int) -> tuple[Floats, NDArray[np.int64]]:

@@ -83,11 +83,11 @@ def joint_of_record(record: object, place: Place) -> ChainJoint:
     return joint
 
 
-def number_of(value: object, place: Place, what: str, column: int | None = None) -> float:
-    """A finite number, out of text or JSON."""
+def number_of(value: object, place: Place, what: str, column: int | None = None, *, written: bool = False) -> float:
+    """A finite number: a JSON value, or, if `written`, the text of one."""
     number = math.nan
     if isinstance(value, str):
-        number = float(value) if _NUMBER.fullmatch(value) else math.nan
+        number = float(value) if written and _NUMBER.fullmatch(value) else math.nan
     elif isinstance(value, int | float) and not isinstance(value, bool):
         try:
             number = float(value)

@@ -150,7 +150,7 @@ class _Reader:
             missing = f" {self.columns[len(words)]} is missing." if len(words) < len(self.columns) else ""
             raise place.refused(f"expected {len(self.columns)} numbers, got {len(words)}.{missing}")
         return [
-            number_of(word, place, name, column)
+            number_of(word, place, name, column, written=True)
             for column, (word, name) in enumerate(zip(words, self.columns, strict=True), start=1)
         ]
 

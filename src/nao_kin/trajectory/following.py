@@ -15,7 +15,7 @@ from nao_kin.ik.problem import Status
 from nao_kin.ik.target import Target, TargetLike
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory.between import error_between
-from nao_kin.trajectory.causes import Cause, cause_of, singular_values
+from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
 from nao_kin.trajectory.demand import Demand, demand_of
 from nao_kin.trajectory.scaling import slowed
 from nao_kin.trajectory.synchrony import per_axis
@@ -180,6 +180,7 @@ class _Walk:
     rotation_error: float = 0.0
     singular_value: float = np.inf
     singular_value_at: int = 0
+    singular: bool = False
 
 
 def _walk(
@@ -209,11 +210,15 @@ def _walk(
             walk.largest_move, walk.largest_move_at = float(moves[joint]), index
         walk.position_error = max(walk.position_error, result.position_error or 0.0)
         walk.rotation_error = max(walk.rotation_error, result.rotation_error or 0.0)
-        smallest = float(singular_values(chain, target, result.q)[-1])
-        if smallest < walk.singular_value:
-            walk.singular_value, walk.singular_value_at = smallest, index
+        values = singular_values(chain, target, result.q)
+        if values[-1] < walk.singular_value:
+            walk.singular_value, walk.singular_value_at = float(values[-1]), index
+            walk.singular = bool(values[-1] < NEAR_SINGULAR * values[0])
         walk.q.append(result.q)
         start = result.q.copy()
+    if walk.singular and walk.status is Status.SOLVED:
+        walk.reason += f" At sample {walk.singular_value_at} it passes near a singularity"
+        walk.reason += f", where the smallest singular value is {walk.singular_value:.2g}."
     return walk
 
 
@@ -238,10 +243,10 @@ def _samples(path: Iterable[TargetLike] | TimedPath, times: ArrayLike | None) ->
 def _limits(chain: Chain, max_velocity: ArrayLike | None, max_acceleration: ArrayLike | None) -> tuple[Floats, Floats]:
     """Greatest speeds and accelerations (n,), +inf where there are none."""
     count = len(chain.joints)
-    speeds = np.array(chain.max_velocity) if max_velocity is None else per_axis(max_velocity, "max_velocity", count)
-    rates = np.full(count, np.inf)
-    if max_acceleration is not None:
-        rates = per_axis(max_acceleration, "max_acceleration", count)
+    own = chain.max_velocity if max_velocity is None else max_velocity
+    speeds = per_axis(own, "max_velocity", count, endless=True)
+    given = np.inf if max_acceleration is None else max_acceleration
+    rates = per_axis(given, "max_acceleration", count, endless=True)
     for what, values in (("max_velocity", speeds), ("max_acceleration", rates)):
         for joint, value in zip(chain.joint_names, values, strict=True):
             positive(float(value), f"{what} of {joint}", endless=True)

@@ -65,29 +65,36 @@ def _at(trajectory: Trajectory, steps: Floats) -> Trajectory:
 def _rates_squared(trajectory: Trajectory, steps: Floats, v_max: Floats, a_max: Floats) -> Floats:
     """X = (du/dt)² at the samples (N,), each in (0, 1]."""
     velocities = trajectory.velocities
-    first, second = _derivatives(velocities, trajectory.accelerations)
+    first, second = _derivatives(velocities, trajectory.accelerations, steps)
     # A speed holds for the whole step, so a sample keeps to the slower of its two.
     with np.errstate(divide="ignore"):
         allowed = np.minimum(1.0, (v_max / np.abs(velocities)).min(axis=1)) ** 2
     bound = np.minimum(np.append(allowed, 1.0), np.append(1.0, allowed))
+    # The accelerations at both ends of a step, the later one at x + 2 w Δu, in the form first w + second x: with the
+    # earlier one alone x would swing up and down where a joint turns back.
+    later = first[1:] + 2.0 * steps[:, None] * second[1:]
+    first, second = np.hstack([first[:-1], later]), np.hstack([second[:-1], second[1:]])
+    bounds = np.concatenate([a_max, a_max])
     count = len(bound)
-    high = np.empty(count)
-    high[-1] = min(bound[-1], _largest_x(first[-1], second[-1], a_max, np.inf, 1.0))
+    high = bound.copy()
     for i in range(count - 2, -1, -1):
-        high[i] = min(bound[i], _largest_x(first[i], second[i], a_max, high[i + 1], steps[i]))
+        high[i] = min(bound[i], _largest_x(first[i], second[i], bounds, high[i + 1], steps[i]))
     x = high.copy()
     for i in range(count - 1):
-        fastest = _largest_w(first[i], second[i], a_max, x[i])
+        fastest = _largest_w(first[i], second[i], bounds, x[i])
         x[i + 1] = min(high[i + 1], max(x[i] + 2.0 * steps[i] * fastest, 0.0))
     return np.maximum(x, 1e-12)
 
 
-def _derivatives(velocities: Floats, accelerations: Floats) -> tuple[Floats, Floats]:
-    """Q' and q'' at the samples (N, n), by differences; at both ends those of the neighbour."""
-    middle = (velocities[:-1] + velocities[1:]) / 2.0
-    first = np.concatenate([velocities[:1], middle, velocities[-1:]])
+def _derivatives(velocities: Floats, accelerations: Floats, steps: Floats) -> tuple[Floats, Floats]:
+    """Q' and q'' at the samples (N, n), by differences; at both ends those of the neighbour, carried on."""
     if not len(accelerations):
+        first = np.concatenate([velocities, velocities])
         return first, np.zeros_like(first)
+    before = velocities[0] - accelerations[0] * steps[0] / 2.0
+    after = velocities[-1] + accelerations[-1] * steps[-1] / 2.0
+    middle = (velocities[:-1] + velocities[1:]) / 2.0
+    first = np.concatenate([before[None], middle, after[None]])
     return first, np.concatenate([accelerations[:1], accelerations, accelerations[-1:]])
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.arrays import Floats, finite, vector
+from nao_kin.arrays import Floats, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.trajectory.ramps import duration_edges, lasting
 from nao_kin.trajectory.trapezoid import Trapezoid
@@ -69,15 +69,19 @@ def synchronised(
     )
 
 
-def per_axis(value: ArrayLike, what: str, count: int) -> Floats:
-    """A number for each axis, out of that or of one for all.
+def per_axis(value: ArrayLike, what: str, count: int, *, endless: bool = False) -> Floats:
+    """A number for each axis, out of that or of one for all; +inf too, if `endless`.
 
     Raises:
         InvalidInputError: Neither.
     """
     if np.ndim(value) == 0:
-        return np.full(count, finite(value, what))
-    return vector(value, what, count)
+        value = np.full(count, value)
+    if not endless:
+        return vector(value, what, count)
+    given = np.array(value, dtype=np.float64)
+    none = given == np.inf
+    return np.where(none, np.inf, vector(np.where(none, 0.0, given), what, count))
 
 
 def _common_duration(profiles: list[Trapezoid]) -> float:
