@@ -11,6 +11,7 @@ from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
+from nao_kin.cli.bench.page import page
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.reach import reach
 from nao_kin.cli.bench.sixr import sixr
@@ -33,6 +34,7 @@ bench.command()(edges)
 bench.command()(explain)
 bench.command()(methods)
 bench.command()(mutants)
+bench.command()(page)
 bench.command()(practicum)
 bench.command()(closed)
 bench.command()(sixr)

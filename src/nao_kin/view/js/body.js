@@ -102,10 +102,12 @@ class BodyPanel {
     });
   }
 
-  // The nodes between body and foot.
-  nodesOf({ base, foot }) {
-    const found = [];
-    for (let node = foot; node !== base && node >= 0; node = this.state.scene.nodes[node].parent) found.push(node);
+  // The nodes from the first joint to the foot.
+  nodesOf({ foot, joints }) {
+    const { nodes } = this.state.scene, found = [foot];
+    while (nodes[found.at(-1)].drive?.joint !== joints[0] && nodes[found.at(-1)].parent >= 0) {
+      found.push(nodes[found.at(-1)].parent);
+    }
     return found;
   }
 

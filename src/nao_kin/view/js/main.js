@@ -68,7 +68,7 @@ function drawExtras(stage, marks, labels, state, scene) {
   scene.nodes.forEach((node, index) => {
     if (!node.drive || !node.label) return;
     const text = scene.joints[node.drive.joint].name;
-    labels.add("joint", () => (labelled ? { text, point: origin(state.world[index]) } : null));
+    labels.add("name", () => (labelled ? { text, point: origin(state.world[index]) } : null));
   });
   state.listen(() => {
     stage.show(state);

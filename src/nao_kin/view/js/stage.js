@@ -15,6 +15,15 @@ function setPose(object, pose) {
   object.matrixWorldNeedsUpdate = true;
 }
 
+// A node's own triangles: the viewer hangs each surface below a group of its own, beside the nodes' children.
+function surfacesOf(object) {
+  const found = [];
+  for (const child of object.children) {
+    if (/^m\d+$/.test(child.name)) child.traverse((each) => { if (each.isMesh) found.push(each); });
+  }
+  return found;
+}
+
 class Stage {
   constructor(viewer, scene) {
     this.viewer = viewer;
@@ -68,7 +77,7 @@ class Stage {
     for (const { world, objects } of this.ghosts) {
       objects.forEach((object, index) => {
         const covered = seen.some((other) => world[index].every((entry, k) => Math.abs(entry - other[index][k]) < 1e-6));
-        for (const child of object.children) if (child.isMesh) child.visible = !covered;
+        for (const surface of surfacesOf(object)) surface.visible = !covered;
       });
       seen.push(world);
     }
@@ -87,10 +96,9 @@ class Stage {
   // Paints the surfaces of some nodes in one colour, or gives them their own back where the colour is null.
   paint(nodes, colour) {
     for (const index of nodes) {
-      for (const child of this.objects[index].children) {
-        if (!child.isMesh) continue;
-        if (!this.colours.has(child)) this.colours.set(child, child.material.color.getHex());
-        child.material.color.set(colour ?? this.colours.get(child));
+      for (const surface of surfacesOf(this.objects[index])) {
+        if (!this.colours.has(surface)) this.colours.set(surface, surface.material.color.getHex());
+        surface.material.color.set(colour ?? this.colours.get(surface));
       }
     }
     this.viewer.set_dirty();
