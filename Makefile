@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint urdf clean
+.PHONY: demo test lint docs urdf clean
 
 demo: $(VENV)/.installed
 	$(BIN)/nao-kin demo
@@ -16,6 +16,10 @@ lint: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+
+# Warnings, and references that lead nowhere, are errors.
+docs: $(VENV)/.installed-dev
+	$(BIN)/python -m sphinx -W --keep-going -n -q -E -b html docs docs/_build/html
 
 # The files in urdf/ come from the tables in tools/urdf_tables/.
 urdf: $(VENV)/.installed-dev
@@ -33,4 +37,4 @@ $(VENV)/.installed-dev: $(VENV)/.installed pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) demo docs/_build docs/reference
