@@ -45,6 +45,11 @@ RUNS: Final[dict[str, tuple[str, ...]]] = {
 }
 """Arguments of each benchmark that the page shows, in its order."""
 
+_ABOUT: Final = (
+    "Written by `python tools/bench_page.py --run`. Each section is one run of the command it names, peers included,",
+    "so compare figures within a section only. An answer, a peer's too, counts as solved only where Pinocchio confirms",
+    "it. A missed goal stays on the page.",
+)
 _MARKED: Final = re.compile(r"(<!-- measured: ([^>]+?) -->\n).*?(<!-- /measured -->)", flags=re.DOTALL)
 _TARGETS: Final = ("README.md", "docs/*.md")
 
@@ -105,13 +110,7 @@ def with_measured_tables(text: str, reports: dict[str, dict[str, Any]]) -> str:
 
 def page(reports: dict[str, dict[str, Any]]) -> str:
     """The page of all benchmarks."""
-    lines = [
-        "# Benchmarks",
-        "",
-        "Written by `python tools/bench_page.py --run`. Each section is one run of the command in it, peers included, so",
-        "compare figures within a section only. An answer, a peer's too, counts as solved only where Pinocchio confirms it.",
-        "A missed goal stays on the page.",
-    ]
+    lines = ["# Benchmarks", "", *_ABOUT]
     for name, report in reports.items():
         lines += ["", f"## bench {name}", "", "```sh", command(name), "```", "", *_machine(report["machine"])]
         for sheet in report["sheets"]:

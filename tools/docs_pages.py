@@ -96,8 +96,8 @@ def ledger_page() -> str:
     head = [
         "# Erratum sheet",
         "",
-        "Every printed formula, table, number and algorithm of the four documents, run when this page was built. No verdict",
-        "is written down: `nao-kin ledger` measures them again, `nao-kin ledger CLAIM` shows one whole.",
+        "Every printed formula, table, number and algorithm of the four documents, run when this page was built.",
+        "No verdict is written down: `nao-kin ledger` measures them again, `nao-kin ledger CLAIM` shows one whole.",
     ]
     return _page([*head, sheet])
 
