@@ -53,6 +53,8 @@ if TYPE_CHECKING:
     from nao_kin.urdf_chain import UrdfChain as UrdfChain
     from nao_kin.view.export import export_html as export_html
     from nao_kin.view.export import show as show
+    from nao_kin.workspace.mapping import reachability as reachability
+    from nao_kin.workspace.reach_map import ReachMap as ReachMap
 
 __version__ = "0.1.0"
 
@@ -72,6 +74,7 @@ _HOME = {
     "LimitRule": "chain",
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
+    "ReachMap": "workspace.reach_map",
     "Report": "checks.finding",
     "Robot": "robot",
     "Solutions": "analytic.solutions",
@@ -92,6 +95,7 @@ _HOME = {
     "load": "robot",
     "nearest": "analytic.solutions",
     "project_to_reach": "ik.along",
+    "reachability": "workspace.mapping",
     "robot_names": "known",
     "show": "view.export",
     "solve": "ik.methods",
