@@ -31,8 +31,9 @@ GROUPS: Final[tuple[tuple[str, str, tuple[str, ...]], ...]] = (
         ("chain", "dh", "dh_from_chain", "dh_row", "errors", "known", "robot", "tolerances", "tree", "urdf_chain"),
     ),
     ("api-comparing", "Comparing, and the ledger", ("crosscheck", "documents")),
-    ("api-solving", "Inverse kinematics", ("ik",)),
+    ("api-solving", "Inverse kinematics", ("ik", "solving")),
     ("api-closed-forms", "Closed forms", ("analytic",)),
+    ("api-moving", "Trajectories and workspaces", ("trajectory", "workspace")),
     ("api-checking", "Checking URDF files", ("checks",)),
     ("api-pages", "Pages", ("view",)),
 )

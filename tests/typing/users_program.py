@@ -37,7 +37,7 @@ def solving(chain: nk.Chain, tree: nk.Tree) -> list[float]:
     assert_type(nk.nearest(every, one.q), nk.IKResult)
     assert_type(nk.follow(chain, [pointing], one.q).completed, bool)
     assert_type(nk.project_to_reach(chain, pointing), nk.Target)
-    return one.q.tolist()
+    return [float(value) for value in one.q]
 
 
 def comparing(rows: list[dict[str, Any]]) -> str:
