@@ -151,7 +151,7 @@ class Chain(JointSpace, Protocol):
         """Rotation (3, 3) and position (3,) of `pose` at a q that is not checked; to be read at once and not kept."""
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at q (n,), tip point, rows (linear; angular), in axes of the frame ``"base"`` or ``"tip"``."""
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of that frame."""
 
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (m, 4, 4) in the base frame of the link behind each of the m physical joints of the path."""
