@@ -3,13 +3,21 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint docs urdf clean
+.PHONY: demo test test-wheel lint docs urdf clean
 
 demo: $(VENV)/.installed
 	$(BIN)/nao-kin demo
 
 test: $(VENV)/.installed-dev lint
 	$(BIN)/python -m pytest -n auto
+
+# The same tests on what a user installs: the wheel, in an environment of its own, away from src.
+test-wheel: $(VENV)/.installed-dev
+	rm -rf dist .venv-wheel
+	$(BIN)/python -m build --quiet --outdir dist .
+	$(PYTHON) -m venv .venv-wheel
+	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[dev]"
+	.venv-wheel/bin/python -m pytest -n auto
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -37,4 +45,4 @@ $(VENV)/.installed-dev: $(VENV)/.installed pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo docs/_build docs/reference
+	rm -rf $(VENV) .venv-wheel dist demo docs/_build docs/reference

@@ -7,10 +7,13 @@ They are not kept under version control: the codes of the check, the ledger and 
 
 from __future__ import annotations
 
+import ast
 import importlib
+import inspect
 import pkgutil
+import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 import nao_kin as nk
 from nao_kin.checks.catalogue import CATALOGUE
@@ -51,24 +54,6 @@ MODULES: Final = (
     "ik.catalogue",
 )
 """Modules whose public names are documented as well; those of `nao_kin.motion` and `nao_kin.trajectory` always are."""
-
-TYPES: Final = (
-    "chain.OutsideLimit",
-    "checks.catalogue.entry.Entry",
-    "checks.finding.Severity",
-    "ik.problem.Problem",
-    "ik.problem.Run",
-    "ik.problem.Trace",
-    "ik.tree_problem.TreeTrace",
-    "kernels.path.JointPath",
-    "known.CoupledLimit",
-    "known.KnownRobot",
-    "table.Column",
-    "table.Table",
-    "urdf.document.UrdfDocument",
-    "urdf_path.Coupling",
-)
-"""What public names hand out and nobody has to make."""
 
 
 def codes_page() -> str:
@@ -143,7 +128,7 @@ def api_pages() -> dict[str, str]:
         left = {name: home for name, home in left.items() if name not in names}
     if left:
         pages["api-more"] = _reference("More public names", [_directive(name) for name in left])
-    pages["api-types"] = _reference("What public names hand out", [_class(name) for name in TYPES])
+    pages["api-types"] = _reference("What public names hand out", [_class(name) for name in handed_out()])
     for module in documented_modules():
         pages[f"module-{module.replace('.', '-')}"] = _reference(f"nao_kin.{module}", [_module(module)])
     return pages
@@ -153,6 +138,53 @@ def documented_modules() -> tuple[str, ...]:
     """Modules that are documented beside the names of the package, without its name."""
     motion = importlib.import_module("nao_kin.motion").__path__
     return (*MODULES, *(f"motion.{module.name}" for module in pkgutil.iter_modules(motion)), "trajectory")
+
+
+def handed_out() -> tuple[str, ...]:
+    """The classes that annotations of public names mention and that stand on no other page, and so on from those."""
+    public = [getattr(nk, name) for name in nk.__all__]
+    modules = [importlib.import_module(f"nao_kin.{name}") for name in documented_modules()]
+    beside = [getattr(module, name) for module in modules for name in module.__all__]
+    known, new = list[Any](), [*public, *beside]
+    while new:
+        known += new
+        mentioned = {name: value for one in new for name, value in _mentioned(one).items()}
+        new = [value for value in mentioned.values() if not any(value is other for other in known)]
+    return tuple(
+        sorted(f"{c.__module__}.{c.__qualname__}".removeprefix("nao_kin.") for c in known[len(public) + len(beside) :])
+    )
+
+
+def _mentioned(value: Any) -> dict[str, type]:
+    """Our own public classes in the annotations of a class or function, by name; annotations are text here."""
+    if not isinstance(value, type) and not inspect.isfunction(value):
+        return {}
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(value))).body
+    parts = tree.body if isinstance(tree, ast.ClassDef) else [tree]
+    parts = [part for part in parts if not getattr(part, "name", "").startswith("_")]
+    words = {
+        node.id
+        for owner in (node for part in parts for node in ast.walk(part))
+        for field in ("annotation", "returns")
+        if (written := getattr(owner, field, None)) is not None
+        for node in ast.walk(written)
+        if isinstance(node, ast.Name) and not node.id.startswith("_")
+    }
+    found = [_looked_up(value.__module__, word) for word in sorted(words)]
+    things = [thing for one in found for thing in get_args(one) or (one,)]  # an alias may stand for several
+    ours = [thing for thing in things if isinstance(thing, type) and thing.__module__.startswith("nao_kin")]
+    return {thing.__qualname__: thing for thing in ours}
+
+
+def _looked_up(module: str, word: str) -> Any:
+    """What a word means in a module, imports for type checkers only included."""
+    home = importlib.import_module(module)
+    if hasattr(home, word):
+        return getattr(home, word)
+    for node in ast.walk(ast.parse(inspect.getsource(home))):
+        if isinstance(node, ast.ImportFrom) and node.module and word in [alias.name for alias in node.names]:
+            return getattr(importlib.import_module(node.module), word, None)
+    return None
 
 
 def _directive(name: str) -> str:
