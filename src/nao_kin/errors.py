@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AuditError",
     "InvalidInputError",
+    "KeyframeFileError",
     "MissingExtraError",
     "NaoKinError",
     "NoPathError",
@@ -146,6 +147,10 @@ class UrdfError(_FileError):
 
 class TableFileError(_FileError):
     """A DH table file was refused; the same attributes as `UrdfError`, without a code."""
+
+
+class KeyframeFileError(_FileError):
+    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

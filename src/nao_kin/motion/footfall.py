@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.motion.profile import minimum_jerk
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -142,7 +143,7 @@ class Steps:
         # Where one foot lands as another one lifts, rounding must not have both in the air.
         u = np.where(u < _INSTANT, 0.0, np.where(u > 1.0 - _INSTANT, 1.0, u))
         start, end = self.places[step], self.places[step + 1]
-        along = (u**3 * (10.0 - 15.0 * u + 6.0 * u**2))[:, None]
+        along = minimum_jerk(u)[:, None]
         # A foot that stands is at its place to the last bit: adding the whole difference would round.
         points[begun, :2] = np.where(u[:, None] < 1.0, start + along * (end - start), end)
         points[begun, 2] = height * (4.0 * u * (1.0 - u)) ** 3

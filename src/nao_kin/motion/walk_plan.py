@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.motion.footfall import LEGS, Steps, steps
+from nao_kin.motion.profile import minimum_jerk
 from nao_kin.se3 import from_xyz_rpy, rotation_z
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ class WalkPlan:
         if not self.lean:
             return np.ones(len(time))
         u = np.clip(np.minimum(time + self.lean, self.end + self.lean - time) / self.lean, 0.0, 1.0)
-        return np.asarray(u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
+        return minimum_jerk(u)
 
 
 def _home(chain: Chain, spread: float) -> Floats:
