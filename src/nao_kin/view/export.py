@@ -98,6 +98,9 @@ def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int =
         posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
         height: Height of the frame in CSS pixels.
 
+    Returns:
+        What Jupyter displays, also after the notebook was saved as HTML.
+
     Raises:
         UnknownNameError: The posture names a joint the robot does not have.
         InvalidInputError: A value of the posture is not a finite number, or the height is not positive.
