@@ -86,6 +86,9 @@ def show(subject: Subject, content: Content | None = None, height: int = 480, *,
         height: Height of the frame in CSS pixels.
         explain: As for `export_html`.
 
+    Returns:
+        What Jupyter displays, also after the notebook was saved as HTML.
+
     Raises:
         UnknownNameError: A posture or trajectory names a joint the robot does not have.
         InvalidInputError: As `export_html`, or the height is not positive.
