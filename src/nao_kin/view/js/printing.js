@@ -5,7 +5,8 @@ function preparePrinting(viewer, pane) {
   const before = () => {
     if (picture) return;
     viewer.render();
-    picture = el("img", { id: "paper", alt: pane.getAttribute("aria-label"), src: viewer.renderer.domElement.toDataURL() });
+    const src = viewer.renderer.domElement.toDataURL();
+    picture = el("img", { id: "paper", alt: pane.getAttribute("aria-label"), src });
     pane.append(picture);
     unfolded = [...document.querySelectorAll("details.section:not([open])")];
     for (const part of unfolded) part.open = true;

@@ -45,7 +45,7 @@ class Stage {
   }
 
   // Copies of the robot that share its triangles, one for each posture, tinted.
-  setGhosts(state, ghosts) {
+  setGhosts(state, marks, ghosts) {
     for (const { group } of this.ghosts) this.world.remove(group);
     this.ghosts = ghosts.map(({ values, colour }) => {
       const group = this.robot.clone(true);
@@ -66,6 +66,7 @@ class Stage {
       const objects = local.map((_, index) => byName.get(`n${index}`));
       local.forEach((pose, index) => setPose(objects[index], pose));
       this.world.add(group);
+      marks.ghostRods(group, this.scene.rods, world, colour);
       return { group, world, objects };
     });
     this.thinGhosts(state);
@@ -76,7 +77,8 @@ class Stage {
     const seen = [state.world];
     for (const { world, objects } of this.ghosts) {
       objects.forEach((object, index) => {
-        const covered = seen.some((other) => world[index].every((entry, k) => Math.abs(entry - other[index][k]) < 1e-6));
+        const same = (other) => world[index].every((entry, k) => Math.abs(entry - other[index][k]) < 1e-6);
+        const covered = seen.some(same);
         for (const surface of surfacesOf(object)) surface.visible = !covered;
       });
       seen.push(world);
