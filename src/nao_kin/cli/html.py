@@ -17,6 +17,7 @@ def html(
     output: Annotated[Path, typer.Option("--output", "-o", help="The page to write.")],
     posture: Annotated[list[str] | None, typer.Option(help="NAME=VALUE [rad, m], repeated; the rest is at 0.")] = None,
     deg: Annotated[bool, typer.Option("--deg", help="--posture is in degrees.")] = False,
+    max_mb: Annotated[float, typer.Option(help="Largest page [MB]; meshes are simplified to stay below it.")] = 5.0,
 ) -> None:
     """Write one self-contained HTML page of a robot in a posture: no server, no network."""
     from nao_kin.robot import load
@@ -24,4 +25,4 @@ def html(
 
     model = load(robot)
     chosen = parse_posture(posture, deg, model) if posture else None
-    typer.echo(f"wrote {export_html(output, model, chosen)}", err=True)
+    typer.echo(f"wrote {export_html(output, model, chosen, max_mb=max_mb)}", err=True)

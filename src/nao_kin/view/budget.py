@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from itertools import islice
+from typing import TYPE_CHECKING, Any, Final
 
 from nao_kin.errors import InvalidInputError
 from nao_kin.view.decimate import decimated
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from nao_kin.view.scene import Scene
+    from nao_kin.view.meshes import Mesh
+    from nao_kin.view.scene import Node, Scene
 
 __all__ = ["DEFAULT_MAX_MB", "fitted"]
 
 DEFAULT_MAX_MB: Final = 5.0
 """Largest page [MB, of a million bytes] unless somebody asks for another."""
 
-ATTEMPTS: Final = 6
+SHAPES: Final = ("meshes",)
+"""Fields of a node that hold meshes, all of which count."""
+
+FEWEST_EACH: Final = 12
+"""Triangles of a mesh below which a page is not made smaller: it would show boxes."""
+
 MARGIN: Final = 0.97
 """Share of the room for triangles that an attempt aims at: fewer triangles compress a little worse."""
 
@@ -44,17 +51,35 @@ def fitted(scene: Scene, max_mb: float, render: Callable[[Scene], str]) -> str:
     page = render(scene)
     if _size(page) <= limit:
         return page
-    bare = _size(render(_with_triangles(scene, 0)))
-    whole = triangles = _triangles(scene)
-    size = _size(page)
-    for _ in range(ATTEMPTS if bare < limit else 0):
-        triangles = int(triangles * MARGIN * (limit - bare) / (size - bare))
-        simpler = _with_triangles(scene, triangles)
-        shown = _triangles(simpler)
-        note = f"Simplified to keep the page below {max_mb:g} MB: {shown} of {whole} triangles are drawn."
-        page = render(replace(simpler, notes=(*scene.notes, note)))
+    meshes = [mesh for node in scene.nodes for field in SHAPES for mesh in getattr(node, field)]
+    bare = _size(render(_refilled(scene, [])))
+    whole, fewest = _triangles(meshes), FEWEST_EACH * len(meshes)
+    triangles, size = whole, _size(page)
+    while triangles > fewest:
+        triangles = max(fewest, int(MARGIN * triangles * max(limit - bare, 0) / (size - bare)))
+        simpler = decimated(meshes, triangles)
+        note = f"Simplified, so that the page stays below {max_mb:g} MB: {_triangles(simpler)} of {whole} triangles."
+        page = render(replace(_refilled(scene, simpler), notes=(*scene.notes, note)))
         size = _size(page)
         if size <= limit:
             return page
-    expected = f"at least {math.ceil(size / 1e4) / 1e2:g} for this scene"
-    raise InvalidInputError("max_mb", expected, f"{max_mb:g}")
+    raise InvalidInputError("max_mb", f"more than {size / 1e6:.2f}, as small as this page gets", f"{max_mb:g}")
+
+
+def _size(page: str) -> int:
+    return len(page.encode("utf-8"))
+
+
+def _triangles(meshes: Sequence[Mesh]) -> int:
+    return sum(len(mesh.faces) for mesh in meshes)
+
+
+def _refilled(scene: Scene, meshes: Sequence[Mesh]) -> Scene:
+    """The scene with other meshes in place of its own, in the same order, as long as there are any."""
+    rest = iter(meshes)
+
+    def refilled(node: Node) -> Node:
+        fields: dict[str, Any] = {field: tuple(islice(rest, len(getattr(node, field)))) for field in SHAPES}
+        return replace(node, **fields)
+
+    return replace(scene, nodes=tuple(map(refilled, scene.nodes)))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
 from nao_kin.view.overlay import comparison_scene
 from nao_kin.view.page import page
 from nao_kin.view.scene import robot_scene
@@ -50,7 +51,13 @@ class InlinePage:
         )
 
 
-def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str, float] | None = None) -> Path:
+def export_html(
+    path: str | os.PathLike[str],
+    robot: Robot,
+    posture: Mapping[str, float] | None = None,
+    *,
+    max_mb: float = DEFAULT_MAX_MB,
+) -> Path:
     """Write a page that shows a robot in one posture: one file, no server, no network.
 
     The page is complete before the file is touched: a failure leaves what was there. The same robot and posture give
@@ -60,16 +67,18 @@ def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str
         path: Where to write; an existing file is replaced.
         robot: The robot.
         posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
+        max_mb: Largest page [MB]; meshes are simplified to stay below it.
 
     Returns:
         The path written to.
 
     Raises:
         UnknownNameError: The posture names a joint the robot does not have.
-        InvalidInputError: A value of the posture is not a finite number, or `path` is a directory or a device.
+        InvalidInputError: A value of the posture is not a finite number, `path` is a directory or a device, or
+            `max_mb` is too small for any picture.
         OSError: The file cannot be written.
     """
-    return _written(path, lambda: robot_scene(robot, posture))
+    return _written(path, lambda: robot_scene(robot, posture), max_mb)
 
 
 def export_comparison(path: str | os.PathLike[str], found: Comparison, *, explain: bool = False) -> Path:
@@ -87,33 +96,41 @@ def export_comparison(path: str | os.PathLike[str], found: Comparison, *, explai
         InvalidInputError: `path` is a directory or a device.
         OSError: The file cannot be written.
     """
-    return _written(path, lambda: comparison_scene(found, explain=explain))
+    return _written(path, lambda: comparison_scene(found, explain=explain), DEFAULT_MAX_MB)
 
 
-def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int = 480) -> InlinePage:
+def show(
+    robot: Robot,
+    posture: Mapping[str, float] | None = None,
+    height: int = 480,
+    *,
+    max_mb: float = DEFAULT_MAX_MB,
+) -> InlinePage:
     """The page of `export_html`, inline in a Jupyter notebook.
 
     Args:
         robot: The robot.
         posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
         height: Height of the frame in CSS pixels.
+        max_mb: Largest page [MB]; meshes are simplified to stay below it.
 
     Raises:
         UnknownNameError: The posture names a joint the robot does not have.
-        InvalidInputError: A value of the posture is not a finite number, or the height is not positive.
+        InvalidInputError: A value of the posture is not a finite number, the height is not positive, or `max_mb` is
+            too small for any picture.
     """
     if height <= 0:
         raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
     scene = robot_scene(robot, posture)
-    return InlinePage(page(scene), scene.title, int(height))
+    return InlinePage(fitted(scene, max_mb, page), scene.title, int(height))
 
 
-def _written(path: str | os.PathLike[str], scene: Callable[[], Scene]) -> Path:
+def _written(path: str | os.PathLike[str], scene: Callable[[], Scene], max_mb: float) -> Path:
     target = Path(path)
     if target.exists() and not target.is_file():
         kind = "directory" if target.is_dir() else "special file"
         raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
-    _replace(target, page(scene()).encode("utf-8"))
+    _replace(target, fitted(scene(), max_mb, page).encode("utf-8"))
     return target
 
 
