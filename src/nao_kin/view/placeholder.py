@@ -63,7 +63,7 @@ def _inertia_box(inertial: Inertial) -> tuple[Box, Floats] | None:
 
 def _nearest_order(axes: Floats) -> list[int]:
     """The order of three directions, columns of `axes`, in which they are nearest to x, y and z."""
-    return list(max(permutations(range(3)), key=lambda order: float(np.abs(axes[range(3), order]).sum())))
+    return list(max(permutations(range(3)), key=lambda order: float(np.abs(axes)[np.arange(3), list(order)].sum())))
 
 
 def label(solids: Sequence[Solid]) -> str:
@@ -84,7 +84,7 @@ def sign_corners(size: Triple) -> Floats:
     squares = []
     for axis, direction in [(axis, direction) for axis in range(3) for direction in (1.0, -1.0)]:
         normal = np.eye(3)[axis] * direction
-        up = np.eye(3)[2 if axis < 2 else 0]
+        up = np.eye(3)[2] if axis < 2 else -np.eye(3)[0]  # a robot is looked at from ahead, where x points
         right = np.cross(up, normal)
         reach = SIGN * min(float(half @ abs(up)), float(half @ abs(right)))
         centre = normal * (half[axis] + 0.002 * half.max())  # in front, or the two surfaces would flicker
