@@ -17,6 +17,7 @@ LEAVES = (
     errors.MissingExtraError("Robot 'ur5'", "robots"),
     errors.UrdfError("a.urdf", 3, "Wrong.", "Right."),
     errors.TableFileError("a.toml", None, "Wrong."),
+    errors.TrajectoryFileError("a.txt", 3, "Wrong.", column=2),
 )
 
 
