@@ -76,13 +76,15 @@ def test_unknown_joint_is_refused_with_its_neighbours(small: Robot) -> None:
         robot_scene(small, {"sholder": 0.0})
 
 
-def test_missing_mesh_is_a_note_and_nothing_else(small: Robot, tmp_path: object) -> None:
+def test_missing_mesh_is_a_note_and_a_box_with_its_name(small: Robot, tmp_path: object) -> None:
     scene = robot_scene(small)
     (note,) = scene.notes
     assert "wheel" in note
     assert "missing/wheel.stl" in note
     assert str(tmp_path) not in note
-    assert next(node for node in scene.nodes if node.label == "wheel").meshes == ()
+    (box,) = next(node for node in scene.nodes if node.label == "wheel").meshes
+    assert box.sign is not None
+    assert box.sign.text == "wheel.stl"
 
 
 def test_bounds_follow_the_posture(small: Robot) -> None:
@@ -116,5 +118,5 @@ def test_a_shape_beyond_all_measure_is_a_note(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     scene = robot_scene(load(path))
-    assert len(scene.nodes[0].meshes) == 1
+    assert [mesh.sign is None for mesh in scene.nodes[0].meshes] == [True, False]
     assert "box" in scene.notes[0]

@@ -25,6 +25,7 @@ def html(
         Path | None, typer.Option(help="JSON file of one posture [rad, m], or of several by name.")
     ] = None,
     trajectory: Annotated[Path | None, typer.Option(help="A trajectory file, to be played.")] = None,
+    max_mb: Annotated[float, typer.Option(help="Largest page [MB]; meshes are simplified to stay below it.")] = 5.0,
 ) -> None:
     """Write one self-contained HTML page of a robot: no server, no network.
 
@@ -38,7 +39,7 @@ def html(
         raise typer.BadParameter("one of --posture, --postures and --trajectory is enough.")
     model = load(robot)
     content = parse_posture(posture, deg, model) if posture else _content(postures, trajectory)
-    typer.echo(f"wrote {export_html(output, model, content)}", err=True)
+    typer.echo(f"wrote {export_html(output, model, content, max_mb=max_mb)}", err=True)
 
 
 def _content(postures: Path | None, trajectory: Path | None) -> Content | None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
 from nao_kin.view.contents import scene_of
 from nao_kin.view.page import page
 
@@ -49,7 +50,12 @@ class InlinePage:
 
 
 def export_html(
-    path: str | os.PathLike[str], subject: Subject, content: Content | None = None, *, explain: bool = False
+    path: str | os.PathLike[str],
+    subject: Subject,
+    content: Content | None = None,
+    *,
+    explain: bool = False,
+    max_mb: float = DEFAULT_MAX_MB,
 ) -> Path:
     """Write a page of a robot, a chain, a result or a comparison: one file, no server, no network.
 
@@ -64,20 +70,28 @@ def export_html(
             result or solutions of one of its chains. None means `robot.neutral`.
         explain: Whether the page of a comparison says what accounts for the disagreement, which may have to be
             searched first.
+        max_mb: Largest page [MB]; meshes are simplified to stay below it.
 
     Returns:
         The path written to.
 
     Raises:
         UnknownNameError: A posture or trajectory names a joint the robot does not have.
-        InvalidInputError: Nothing that can be shown, a value that is not a finite number, no solutions, or `path` is a
-            directory or a device.
+        InvalidInputError: Nothing that can be shown, a value that is not a finite number, no solutions, `path` is a
+            directory or a device, or `max_mb` is too small for any picture.
         OSError: The file cannot be written.
     """
-    return _written(path, lambda: scene_of(subject, content, explain=explain))
+    return _written(path, lambda: scene_of(subject, content, explain=explain), max_mb)
 
 
-def show(subject: Subject, content: Content | None = None, height: int = 480, *, explain: bool = False) -> InlinePage:
+def show(
+    subject: Subject,
+    content: Content | None = None,
+    height: int = 480,
+    *,
+    explain: bool = False,
+    max_mb: float = DEFAULT_MAX_MB,
+) -> InlinePage:
     """The page of `export_html`, inline in a Jupyter notebook.
 
     Args:
@@ -85,6 +99,7 @@ def show(subject: Subject, content: Content | None = None, height: int = 480, *,
         content: As for `export_html`.
         height: Height of the frame in CSS pixels.
         explain: As for `export_html`.
+        max_mb: As for `export_html`.
 
     Returns:
         What Jupyter displays, also after the notebook was saved as HTML.
@@ -96,15 +111,15 @@ def show(subject: Subject, content: Content | None = None, height: int = 480, *,
     if height <= 0:
         raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
     scene = scene_of(subject, content, explain=explain)
-    return InlinePage(page(scene), scene.title, int(height))
+    return InlinePage(fitted(scene, max_mb, page), scene.title, int(height))
 
 
-def _written(path: str | os.PathLike[str], scene: Callable[[], Scene]) -> Path:
+def _written(path: str | os.PathLike[str], scene: Callable[[], Scene], max_mb: float) -> Path:
     target = Path(path)
     if target.exists() and not target.is_file():
         kind = "directory" if target.is_dir() else "special file"
         raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
-    _replace(target, page(scene()).encode("utf-8"))
+    _replace(target, fitted(scene(), max_mb, page).encode("utf-8"))
     return target
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from nao_kin.view.meshes import Mesh
 from nao_kin.view.scene import bounds, local_pose
+from nao_kin.view.signs import sign_command
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -52,6 +53,8 @@ def recorded(scene: Scene) -> list[bytes]:
     for node, path in zip(scene.nodes, node_paths(scene), strict=True):
         commands.append(_transform(path, local_pose(node, values)))
         commands.extend(_shapes(path, node))
+        signs = [mesh.sign for mesh in node.meshes if mesh.sign is not None]
+        commands.extend(sign_command(f"{path}/s{number}", sign) for number, sign in enumerate(signs))
     return [umsgpack.packb(command) for command in commands]
 
 
@@ -163,7 +166,17 @@ def _surface(path: str, mesh: Mesh) -> Command:
     material = geometry.MeshPhongMaterial(
         color=(red << 16) + (green << 8) + blue, opacity=alpha, specular=0x303030, shininess=20
     )
-    return _object(path, "Mesh", geometry.TriangularMeshGeometry(mesh.vertices, mesh.faces), material)
+    # Indices of 16 bits, which meshcat does not pack, would not be smaller: compression finds the zeros in those of 32.
+    return _object(path, "Mesh", geometry.TriangularMeshGeometry(_rounded(mesh.vertices), mesh.faces), material)
+
+
+def _rounded(vertices: Floats) -> Floats:
+    """Vertices on a grid of 2^-15 to 2^-16 of their extent, which nobody sees and which compresses a fifth better."""
+    extent = float(np.ptp(vertices, axis=0).max())
+    if not extent > 0.0:
+        return vertices
+    step = 2.0 ** (math.ceil(math.log2(extent)) - 16)  # a power of two: the last bits become zeros
+    return np.round(vertices / step) * step
 
 
 def _object(path: str, kind: str, shape: Any, material: Any) -> Command:
