@@ -20,6 +20,7 @@ __all__ = [
     "NaoKinError",
     "NoPathError",
     "TableFileError",
+    "TrajectoryFileError",
     "UnknownNameError",
     "UrdfError",
 ]
@@ -151,6 +152,18 @@ class TableFileError(_FileError):
 
 class KeyframeFileError(_FileError):
     """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
+
+
+class TrajectoryFileError(_FileError):
+    """A trajectory file was refused; the same attributes as `UrdfError`, without a code, and the column.
+
+    Attributes:
+        column: Number of the column, 1-based, or None where the whole line or file is meant.
+    """
+
+    def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, column: int | None = None) -> None:
+        super().__init__(path, line, reason if column is None else f"column {column}: {reason}", hint)
+        self.column = column
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

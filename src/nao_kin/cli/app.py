@@ -34,6 +34,7 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
     "walk": {"short_help": "A hexapod's walk: gait, speed, margins."},
     "play": {"short_help": "Keyframes as a motion, within limits."},
+    "workspace": {"short_help": "A map of where a tip can be."},
     "html": {"short_help": "One HTML page that shows a robot."},
     "warmup": {"short_help": "Compile ahead what later calls need."},
     "bench": {"short_help": "Speed and success as ratios within one run."},

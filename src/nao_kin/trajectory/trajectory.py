@@ -88,6 +88,16 @@ class Trajectory:
         speeds: Floats = np.diff(self.q, axis=0) / np.diff(self.times)[:, None]
         return speeds
 
+    @property
+    def accelerations(self) -> Floats:
+        """Change of speed at each sample between two others, (N − 2, n) [rad/s² or m/s²].
+
+        It is spread over half of either step: to be had where the samples lie on a smooth motion.
+        """
+        steps = np.diff(self.times)
+        changes: Floats = 2.0 * np.diff(self.velocities, axis=0) / (steps[:-1] + steps[1:])[:, None]
+        return changes
+
     def at(self, time: float) -> Floats:
         """Joint values (n,) at an instant [s], between samples on the straight line, at both ends held."""
         return np.array([np.interp(time, self.times, column) for column in self.q.T])
