@@ -150,10 +150,6 @@ class TableFileError(_FileError):
     """A DH table file was refused; the same attributes as `UrdfError`, without a code."""
 
 
-class KeyframeFileError(_FileError):
-    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
-
-
 class TrajectoryFileError(_FileError):
     """A trajectory file was refused; the same attributes as `UrdfError`, without a code, and the column.
 
@@ -164,6 +160,10 @@ class TrajectoryFileError(_FileError):
     def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, column: int | None = None) -> None:
         super().__init__(path, line, reason if column is None else f"column {column}: {reason}", hint)
         self.column = column
+
+
+class KeyframeFileError(_FileError):
+    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
