@@ -191,6 +191,12 @@ def test_edges_tells_a_claim_from_an_answer(fakes: None) -> None:
     assert {row["solver"] for row in data["singular"]} == {"nao_kin", "liar", "honest"}
 
 
+def test_pages_are_plain_data() -> None:
+    data = data_of("page", "--rounds", "1")
+    assert [row["robot"] for row in data["rows"]] == ["nao", "jaco2", "phantomx"]
+    assert all(row["ratio"] > 0 and 0.9 < row["mb"] < 5 for row in data["rows"])
+
+
 def test_startup_is_plain_data() -> None:
     data = data_of("startup", "--rounds", "1")
     assert [row["what"] for row in data["rows"]][-1] == "first solve, warm cache"

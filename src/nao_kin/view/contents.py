@@ -139,7 +139,10 @@ def _trajectory_scene(robot: Robot, trajectory: Trajectory) -> Scene:
             if np.abs(trajectory.column(name) - wanted).max() > 1e-9:
                 raise InvalidInputError(f"trajectory, {name}", f"values that follow {c.leader}", "others")
     name = trajectory.name or "trajectory"
-    motion = Motion(name, trajectory.joint_names, trajectory.times, np.round(trajectory.q, DIGITS), tips=(0,))
+    moved = {leaders[joint].leader if joint in leaders else joint for joint in trajectory.joint_names}
+    shared = [len(moved & _motors(scene, chain)) for chain in scene.chains]
+    tips = sorted((k for k, count in enumerate(shared) if count), key=lambda k: -shared[k])
+    motion = Motion(name, trajectory.joint_names, trajectory.times, np.round(trajectory.q, DIGITS), tips=tuple(tips))
     produced = f"{name}, {len(trajectory)} samples over {trajectory.duration:.4g} s"
     return replace(scene, motion=motion, produced=produced, legs=())
 
@@ -152,6 +155,20 @@ def _walk_scene(robot: Robot, walk: Walk) -> Scene:
     T_start_root = np.round(np.linalg.inv(walk.T_world_body[0]) @ walk.T_world_body, DIGITS)
     motion = replace(cast("Motion", scene.motion), body=T_start_root, tips=tuple(range(len(scene.chains))))
     return replace(scene, motion=motion, notes=(*scene.notes, walk.message))
+
+
+def _motors(scene: Scene, chain: SceneChain) -> set[str]:
+    """The joints that move a chain, each by its leader, from its tip down to its base or the root."""
+    leaders = {joint.name: joint.leader or joint.name for joint in scene.joints}
+    found, index = set(), chain.tip
+    while index != chain.base:
+        node = scene.nodes[index]
+        if node.drive is not None:
+            found.add(leaders[node.drive.joint])
+        if node.parent is None:
+            break
+        index = node.parent
+    return found
 
 
 def _space_of(content: Any) -> JointSpace:

@@ -12,6 +12,7 @@ from nao_kin.cli.bench.gait import gait
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
+from nao_kin.cli.bench.page import page
 from nao_kin.cli.bench.practicum import practicum
 from nao_kin.cli.bench.reach import reach
 from nao_kin.cli.bench.sixr import sixr
@@ -35,6 +36,7 @@ bench.command()(explain)
 bench.command()(gait)
 bench.command()(methods)
 bench.command()(mutants)
+bench.command()(page)
 bench.command()(practicum)
 bench.command()(closed)
 bench.command()(sixr)

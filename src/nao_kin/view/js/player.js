@@ -1,6 +1,7 @@
 // A motion: play, pause, scrub, speed, and its curves. Or the iterates of a solver, one by one.
 
 const ITERATES_A_SECOND = 8;
+const PATH_PIECES = 240; // straight pieces a path is drawn with at most
 const START_COLOURS = [0x7a4fd0, 0x0d8f9f, 0xd9640f, 0x2f9e44];
 
 class Player {
@@ -87,8 +88,9 @@ class Player {
     const { iterates, starts } = this.motion;
     this.scrubber.value = String(this.time);
     const count = this.motion.times.length - 1, sample = Math.round(this.time);
-    this.clock.textContent = !iterates ? `${this.time.toFixed(2)} / ${this.end.toFixed(2)} s`
-      : `${sample === count ? "returned" : `iterate ${sample}`} of ${count}${starts && starts[count] ? `, start ${starts[sample]}` : ""}`;
+    const which = sample === count ? "returned" : `iterate ${sample} of ${count}`;
+    const start = starts && starts[count] ? `, start ${starts[sample]}` : ""; // where there were several
+    this.clock.textContent = iterates ? which + start : `${this.time.toFixed(2)} / ${this.end.toFixed(2)} s`;
     this.scrubber.setAttribute("aria-valuetext", this.clock.textContent);
     for (const chart of this.charts) chart.point(this.time);
   }
@@ -128,15 +130,17 @@ class Player {
     if (!marks) return;
     const { tips, starts, times, body } = this.motion;
     const at = (sample) => (body ? body[sample] : identity());
-    const worlds = times.map((_, sample) => this.state.poses(this.values(sample), at(sample)).world);
-    for (const chain of tips) {
-      const points = worlds.map((world) => origin(world[this.state.scene.chains[chain].tip]));
-      const runs = [...new Set(starts ?? [0])];
-      for (const run of runs) {
-        const colour = START_COLOURS[runs.indexOf(run) % START_COLOURS.length];
-        marks.path(starts ? points.filter((_, sample) => starts[sample] === run) : points, colour);
+    if (!tips.length) return;
+    [...new Set(starts ?? [0])].forEach((run, k) => {
+      const samples = times.map((_, sample) => sample).filter((sample) => !starts || starts[sample] === run);
+      const step = Math.max(1, Math.ceil((samples.length - 1) / PATH_PIECES));
+      const chosen = samples.filter((_, index) => index % step === 0 || index === samples.length - 1);
+      const worlds = chosen.map((sample) => this.state.poses(this.values(sample), at(sample)).world);
+      for (const chain of tips) {
+        const { tip } = this.state.scene.chains[chain];
+        marks.path(worlds.map((world) => origin(world[tip])), START_COLOURS[k % START_COLOURS.length]);
       }
-    }
+    });
   }
 
   drawCurves() {
@@ -178,15 +182,17 @@ class Player {
     const bounds = (values) => (only < 0 ? [] : values.filter((value) => value !== null)
       .map((value) => ({ value: value * factor })));
     const middle = times.slice(1).map((time, k) => (time + times[k]) / 2);
-    const speed = (column) => middle.map((_, k) => factor * (q[k + 1][column] - q[k][column]) / (times[k + 1] - times[k]));
+    const rate = (column, k) => (q[k + 1][column] - q[k][column]) / (times[k + 1] - times[k]);
+    const speed = (column) => middle.map((_, k) => factor * rate(column, k));
+    const series = (x, y) => same.map((column) => ({ name: name(column), colour: colour(column), x, y: y(column) }));
     const value = {
-      title: only < 0 ? "joint values" : `${name(only)}, value`, unit: units.unit(slides), limits: bounds([lower, upper]),
-      series: same.map((column) => ({ name: name(column), colour: colour(column), x: times, y: q.map((r) => factor * r[column]) })),
+      title: only < 0 ? "joint values" : `${name(only)}, value`, unit: units.unit(slides),
+      limits: bounds([lower, upper]), series: series(times, (column) => q.map((sample) => factor * sample[column])),
     };
     if (times.length < 2) return [value];
     return [value, {
-      title: "speed", unit: `${units.unit(slides)}/s`, limits: bounds([velocity, velocity === null ? null : -velocity]),
-      series: same.map((column) => ({ name: name(column), colour: colour(column), x: middle, y: speed(column) })),
+      title: "speed", unit: `${units.unit(slides)}/s`,
+      limits: bounds(velocity === null ? [] : [velocity, -velocity]), series: series(middle, speed),
     }];
   }
 }
