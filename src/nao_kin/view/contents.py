@@ -14,6 +14,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Curve, Goal, Motion, NamedPosture, Panel, Scene, SceneChain
+from nao_kin.view.workspace_scene import with_workspace
 
 if TYPE_CHECKING:
     from nao_kin.analytic.solutions import Solutions
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from nao_kin.ik.tree_problem import TreeResult
     from nao_kin.trajectory import Trajectory
     from nao_kin.tree import Tree
+    from nao_kin.workspace.reach_map import ReachMap
 
 __all__ = ["Content", "Subject", "scene_of"]
 
@@ -30,7 +32,13 @@ Subject: TypeAlias = Union[Robot, "Chain", "IKResult", "TreeResult", "Solutions"
 """What a page is about."""
 
 Content: TypeAlias = Union[
-    "Mapping[str, float]", "Mapping[str, Mapping[str, float]]", "Trajectory", "IKResult", "TreeResult", "Solutions"
+    "Mapping[str, float]",
+    "Mapping[str, Mapping[str, float]]",
+    "Trajectory",
+    "IKResult",
+    "TreeResult",
+    "Solutions",
+    "ReachMap",
 ]
 """What a robot is shown with."""
 
@@ -42,8 +50,8 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
     Args:
         subject: A robot, a chain, a result, all solutions, or a comparison.
-        content: For a robot: a posture, named postures, a trajectory, or a result or solutions of one of its chains;
-            None means its neutral posture.
+        content: For a robot: a posture, named postures, a trajectory, a map of where a tip can be, or a result or
+            solutions of one of its chains; None means its neutral posture.
         explain: Of a comparison: whether to say what accounts for a disagreement, which may have to be searched.
 
     Raises:
@@ -60,9 +68,13 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
 def _robot_with(robot: Robot, content: Any) -> Scene:
     from nao_kin.trajectory import Trajectory
+    from nao_kin.workspace.reach_map import ReachMap
 
     if content is None:
         return robot_scene(robot)
+    if isinstance(content, ReachMap):
+        T_root_base = robot.pose(robot.neutral, content.base_name).homogeneous
+        return with_workspace(robot_scene(robot), content, T_root_base)
     if isinstance(content, Trajectory):
         return _trajectory_scene(robot, content)
     if isinstance(content, Mapping):
@@ -90,8 +102,8 @@ def _scene(subject: Any, explain: bool) -> Scene:
         case Chain():
             return chain_scene(subject)
     expected = (
-        "a robot, a chain, an IKResult, Solutions or a Comparison; with a robot also a posture, named postures or a "
-        "Trajectory"
+        "a robot, a chain, an IKResult, Solutions or a Comparison; with a robot also a posture, named postures, a "
+        "Trajectory or a ReachMap"
     )
     raise InvalidInputError("what to show", expected, repr(subject)[:60])
 
