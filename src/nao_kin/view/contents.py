@@ -14,6 +14,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Curve, Goal, Motion, NamedPosture, Panel, Scene, SceneChain
+from nao_kin.view.workspace_scene import with_workspace
 
 if TYPE_CHECKING:
     from nao_kin.analytic.solutions import Solutions
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from nao_kin.motion.gait import Walk
     from nao_kin.trajectory import Trajectory
     from nao_kin.tree import Tree
+    from nao_kin.workspace.reach_map import ReachMap
 
 __all__ = ["Content", "Subject", "scene_of"]
 
@@ -35,6 +37,7 @@ Content: TypeAlias = Union[
     "Mapping[str, Mapping[str, float]]",
     "Trajectory",
     "Walk",
+    "ReachMap",
     "IKResult",
     "TreeResult",
     "Solutions",
@@ -49,8 +52,8 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
     Args:
         subject: A robot, a chain, a result, all solutions, or a comparison.
-        content: For a robot: a posture, named postures, a trajectory, a walk, or a result or solutions of one of its
-            chains; None means its neutral posture.
+        content: For a robot: a posture, named postures, a trajectory, a walk, a map of where a tip can be, or a
+            result or solutions of one of its chains; None means its neutral posture.
         explain: Of a comparison: whether to say what accounts for a disagreement, which may have to be searched.
 
     Raises:
@@ -68,11 +71,15 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 def _robot_with(robot: Robot, content: Any) -> Scene:
     from nao_kin.motion.gait import Walk
     from nao_kin.trajectory import Trajectory
+    from nao_kin.workspace.reach_map import ReachMap
 
     if content is None:
         return robot_scene(robot)
     if isinstance(content, Walk):
         return _walk_scene(robot, content)
+    if isinstance(content, ReachMap):
+        T_root_base = robot.pose(robot.neutral, content.base_name).homogeneous
+        return with_workspace(robot_scene(robot), content, T_root_base)
     if isinstance(content, Trajectory):
         return _trajectory_scene(robot, content)
     if isinstance(content, Mapping):
@@ -101,7 +108,7 @@ def _scene(subject: Any, explain: bool) -> Scene:
             return chain_scene(subject)
     expected = (
         "a robot, a chain, an IKResult, Solutions or a Comparison; with a robot also a posture, named postures, a "
-        "Trajectory or a Walk"
+        "Trajectory, a Walk or a ReachMap"
     )
     raise InvalidInputError("what to show", expected, repr(subject)[:60])
 
