@@ -314,9 +314,11 @@ class Robot:
             lower, upper = joint_range(joint)
             speed = joint.limit.velocity if joint.limit else None
             follows = f"{joint.kind}, follows {leaders[joint.name]}" if joint.name in leaders else joint.kind
-            rows.append((joint.name, follows, f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}"))
-        columns = (Column("joint"), Column("kind"), *(Column(c, number=True) for c in ("lower", "upper", "max speed")))
-        return Table(columns, tuple(rows), title=f"{self.name}: joints [rad, rad/s; m, m/s]")
+            limits = (f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}")
+            rows.append((joint.name, follows, "m" if joint.kind == "prismatic" else "rad", *limits))
+        numbers = (Column(c, number=True) for c in ("lower [unit]", "upper [unit]", "max speed [unit/s]"))
+        columns = (Column("joint"), Column("kind"), Column("unit"), *numbers)
+        return Table(columns, tuple(rows), title=f"{self.name}: {len(rows)} moving joints")
 
 
 def _limit_rule(rule: CoupledLimit) -> LimitRule:

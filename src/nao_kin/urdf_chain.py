@@ -20,6 +20,7 @@ from nao_kin.chain import (
     compiled_jacobians,
     compiled_poses,
     configuration,
+    limit_table,
     stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
@@ -229,6 +230,9 @@ class UrdfChain:
 
     def __repr__(self) -> str:
         return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"
+
+    def _repr_html_(self) -> str:
+        return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
 
 
 def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:

@@ -106,6 +106,9 @@ class Ledger:
         parts += [f"{counts[Verdict.fails]} fail", f"{counts[Verdict.not_checkable]} cannot be checked"]
         return f"{len(self)} printed statements: {', '.join(parts)}."
 
+    def __repr__(self) -> str:
+        return f"<Ledger of {self.summary}>"
+
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
 

@@ -13,6 +13,7 @@ from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
 from nao_kin.ik.target import Target, TargetLike
 from nao_kin.solving import CLOSED, solve
+from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory.between import error_between
 from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
@@ -79,6 +80,27 @@ class FollowResult:
     def completed(self) -> bool:
         """Whether every sample was reached without a jump."""
         return len(self.q) == self.samples and self.status is Status.SOLVED
+
+    def table(self) -> Table:
+        """The outcome in numbers."""
+        rows = (
+            ("status", self.status.name),
+            ("samples reached", f"{len(self.q)} of {self.samples}"),
+            ("largest move of a joint [rad or m]", f"{self.largest_move:.4g}, to sample {self.largest_move_at}"),
+            ("largest position error [m]", f"{self.max_position_error:.3g}"),
+            ("  between samples [m]", f"{self.position_error_between:.3g}"),
+            ("largest rotation error [rad]", f"{self.max_rotation_error:.3g}"),
+            ("  between samples [rad]", f"{self.rotation_error_between:.3g}"),
+            ("smallest singular value", f"{self.smallest_singular_value:.3g}, at {self.smallest_singular_value_at}"),
+            *(() if self.trajectory is None else (("duration [s]", f"{self.trajectory.duration:.4g}"),)),
+        )
+        return Table((Column("what"), Column("value")), rows, title="A path in joint space", note=self.reason)
+
+    def __repr__(self) -> str:
+        return f"<FollowResult {self.status.name}: {len(self.q)} of {self.samples} samples>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
 
     @property
     def ended_at(self) -> int | None:
