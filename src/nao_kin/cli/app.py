@@ -33,6 +33,7 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
     "html": {"short_help": "One HTML page that shows a robot."},
+    "trajectory": {"short_help": "Motions over time: plan, run, show."},
     "warmup": {"short_help": "Compile ahead what later calls need."},
     "bench": {"short_help": "Speed and success as ratios within one run."},
 }
