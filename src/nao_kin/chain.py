@@ -37,6 +37,7 @@ __all__ = [
     "neutral",
     "outside_limits",
     "random_configurations",
+    "sampling_range",
     "stacked_limits",
 ]
 
@@ -227,18 +228,25 @@ def neutral(chain: JointSpace) -> Floats:
     return into_limits(chain, np.zeros(len(chain.joints)))
 
 
-def random_configurations(chain: JointSpace, count: int, rng: np.random.Generator) -> Floats:
-    """`count` configurations (count, n), uniform inside the limits; a joint without limits turns through ±π.
+def sampling_range(chain: JointSpace) -> tuple[Floats, Floats]:
+    """Finite ends (n,), (n,) between which joints are sampled: the limits; ±π for a joint that turns without limits.
 
-    A prismatic joint without limits moves through ±1 m, and a
-    joint with one limit through as much from there. Coupled limits are met by moving the limited joint into its
-    range, so its values gather at the ends there.
+    A prismatic joint without limits moves through ±1 m, and a joint with one limit through as much from there.
     """
     half = np.array([1.0 if joint.kind == "prismatic" else math.pi for joint in chain.joints])
     endless = 1e6  # [rad, m] some files write a huge number where they mean that there is no limit
     low, high = np.abs(chain.lower) < endless, np.abs(chain.upper) < endless
     lower = np.where(low, chain.lower, np.where(high, np.minimum(-half, chain.upper - 2 * half), -half))
     upper = np.where(high, chain.upper, np.where(low, np.maximum(half, chain.lower + 2 * half), half))
+    return lower, upper
+
+
+def random_configurations(chain: JointSpace, count: int, rng: np.random.Generator) -> Floats:
+    """`count` configurations (count, n), uniform inside the limits; see `sampling_range` for joints without any.
+
+    Coupled limits are met by moving the limited joint into its range, so its values gather at the ends there.
+    """
+    lower, upper = sampling_range(chain)
     Q = np.clip(rng.uniform(lower, upper, size=(count, len(chain.joints))), chain.lower, chain.upper)
     if chain.limit_rules:
         Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)

@@ -32,6 +32,7 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "check": {"short_help": "Defects of URDF files, with lines; for CI."},
     "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
+    "workspace": {"short_help": "A map of where a tip can be."},
     "html": {"short_help": "One HTML page that shows a robot."},
     "trajectory": {"short_help": "Motions over time: plan, run, show."},
     "warmup": {"short_help": "Compile ahead what later calls need."},

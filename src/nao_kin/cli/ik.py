@@ -38,7 +38,7 @@ def ik(
 ) -> None:
     """Inverse kinematics: joints that bring the tip to a position, a pose, or where a posture has it."""
     from nao_kin.chain import joint_table
-    from nao_kin.ik.methods import solve
+    from nao_kin.solving import solve
 
     model, path = robot_and_chain(robot, chain, base, tip)
     target = _target(model, path, xyz, rpy, posture, deg)
@@ -53,7 +53,8 @@ def ik(
     if format is OutputFormat.json:
         report_json(result_data(result))
     else:
-        report(joint_table(path, result.q, f"{path.name}: {path.base} → {path.tip}"), result.message)
+        branch = f" Branch: {result.branch}." if result.branch else ""
+        report(joint_table(path, result.q, f"{path.name}: {path.base} → {path.tip}"), result.message + branch)
     if html is not None:
         from nao_kin.view.export import export_html
 

@@ -10,9 +10,9 @@ import numpy as np
 from nao_kin.arrays import Floats, frozen, positive, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.loop import Budget
-from nao_kin.ik.methods import solve
 from nao_kin.ik.problem import Status
 from nao_kin.ik.target import Target, TargetLike
+from nao_kin.solving import solve
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory.between import error_between
 from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
@@ -122,7 +122,7 @@ def follow(
         max_velocity: Greatest joint speeds, (n,) or one for all [rad/s or m/s]; the chain's own unless given.
         max_acceleration: Greatest joint accelerations, (n,) or one for all [rad/s² or m/s²]; none unless given.
         jump: Largest move of a joint between consecutive samples [rad or m]; the move to the first one is free.
-        method: A name in `nao_kin.METHODS`.
+        method: A name in `nao_kin.METHODS`; ``"closed"`` takes at each sample the branch nearest to the one before.
         tolerances: When a sample counts as reached.
         name: Name of the trajectory.
 
@@ -192,9 +192,10 @@ def _walk(
     tolerances: Tolerances,
 ) -> _Walk:
     """Solves sample after sample until one is not reached."""
+    budget = None if method == "closed" else _ONE_START  # a closed form takes the branch nearest to the start
     walk, start = _Walk(reason=f"All {len(targets)} samples are reached."), q0
     for index, target in enumerate(targets):
-        result = solve(chain, target, start, method=method, tolerances=tolerances, budget=_ONE_START)
+        result = solve(chain, target, start, method=method, tolerances=tolerances, budget=budget)
         before = walk.q[-1] if walk.q else result.q
         moves = np.abs(result.q - before)
         joint = int(moves.argmax())

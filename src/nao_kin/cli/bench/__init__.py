@@ -12,6 +12,7 @@ from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
 from nao_kin.cli.bench.practicum import practicum
+from nao_kin.cli.bench.reach import reach
 from nao_kin.cli.bench.sixr import sixr
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
@@ -35,5 +36,6 @@ bench.command()(mutants)
 bench.command()(practicum)
 bench.command()(closed)
 bench.command()(sixr)
+bench.command()(reach)
 bench.command()(startup)
 bench.command()(tips)
