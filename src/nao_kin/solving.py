@@ -5,7 +5,7 @@ Closed forms are imported when they are asked for: who iterates need not wait fo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, cast, overload
 
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import batch, methods
@@ -26,9 +26,10 @@ if TYPE_CHECKING:
     from nao_kin.ik.target import Target, TargetLike
     from nao_kin.ik.tree_problem import TreeResult
 
-__all__ = ["solve", "solve_batch"]
+__all__ = ["CLOSED", "solve", "solve_batch"]
 
-_CLOSED = "closed"
+CLOSED: Final = "closed"
+"""Name of the method that iterates nothing."""
 
 
 @overload
@@ -106,7 +107,7 @@ def solve(
         UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
             matches.
     """
-    if method == _CLOSED and not isinstance(chain, Tree):
+    if method == CLOSED and not isinstance(chain, Tree):
         from nao_kin.analytic.closed import solve_closed
 
         _refuse_steps(budget, tolerances, parameters, engine=engine, trace=trace)
@@ -162,7 +163,7 @@ def solve_batch(
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
     options: dict[str, Any] = {"tolerances": tolerances, "seed": seed, "audit": audit}
-    if method == _CLOSED:
+    if method == CLOSED:
         from nao_kin.analytic.closed import solve_closed_batch
 
         _refuse_steps(budget, tolerances, parameters)

@@ -12,7 +12,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
 from nao_kin.ik.target import Target, TargetLike
-from nao_kin.solving import solve
+from nao_kin.solving import CLOSED, solve
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory.between import error_between
 from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
@@ -192,8 +192,8 @@ def _walk(
     tolerances: Tolerances,
 ) -> _Walk:
     """Solves sample after sample until one is not reached."""
-    budget = None if method == "closed" else _ONE_START  # a closed form takes the branch nearest to the start
     walk, start = _Walk(reason=f"All {len(targets)} samples are reached."), q0
+    budget = None if method == CLOSED else _ONE_START
     for index, target in enumerate(targets):
         result = solve(chain, target, start, method=method, tolerances=tolerances, budget=budget)
         before = walk.q[-1] if walk.q else result.q

@@ -83,7 +83,8 @@ def _rates_squared(trajectory: Trajectory, steps: Floats, v_max: Floats, a_max: 
     for i in range(count - 1):
         fastest = _largest_w(first[i], second[i], bounds, x[i])
         x[i + 1] = min(high[i + 1], max(x[i] + 2.0 * steps[i] * fastest, 0.0))
-    return np.asarray(np.maximum(x, 1e-12))
+    floored: Floats = np.maximum(x, 1e-12)
+    return floored
 
 
 def _derivatives(velocities: Floats, accelerations: Floats, steps: Floats) -> tuple[Floats, Floats]:
