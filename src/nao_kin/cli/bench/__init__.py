@@ -18,6 +18,7 @@ from nao_kin.cli.bench.reach import reach
 from nao_kin.cli.bench.sixr import sixr
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
+from nao_kin.cli.bench.trajectory import trajectory
 
 __all__ = ["bench"]
 
@@ -43,3 +44,4 @@ bench.command()(sixr)
 bench.command()(reach)
 bench.command()(startup)
 bench.command()(tips)
+bench.command()(trajectory)
