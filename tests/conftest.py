@@ -5,14 +5,18 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
+import sys
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import nao_kin as nk
 from nao_kin.known import KNOWN_ROBOTS, example_robot_data_share
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 BUNDLED = tuple(name for name, robot in KNOWN_ROBOTS.items() if robot.source == "bundled")
 EXAMPLES = tuple(name for name, robot in KNOWN_ROBOTS.items() if robot.source != "bundled")
@@ -44,3 +48,15 @@ def needs(module: str) -> Any:
             pytest.fail(f"{module} must be installed in CI")
         pytest.skip(f"{module} is not installed")
     return importlib.import_module(module)
+
+
+@pytest.fixture
+def this_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Makes notebooks run on this very interpreter, whatever kernels the machine has."""
+    kernel = tmp_path / "kernels" / "python3"
+    kernel.mkdir(parents=True)
+    (kernel / "kernel.json").write_text(
+        f'{{"argv": ["{sys.executable}", "-m", "ipykernel_launcher", "-f", "{{connection_file}}"], '
+        '"display_name": "Python 3", "language": "python"}'
+    )
+    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path), prepend=os.pathsep)
