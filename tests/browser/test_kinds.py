@@ -9,6 +9,9 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.analytic.body import body_ik
+from nao_kin.motion.footfall import LEGS
+from nao_kin.motion.gait import walk
+from nao_kin.motion.walk_command import WalkCommand
 from nao_kin.se3 import from_xyz_rpy
 from tests.browser.seeing import drive, number, pixels, robot_mask, slide, slide_all, tip, tip_shown
 from tests.conftest import robot
@@ -145,6 +148,26 @@ def test_a_trajectory_plays_and_is_scrubbed(shown: Show) -> None:
     assert page.evaluate("() => naoKin.player.playing")
     drive(page, nao.joint_names, {"HeadYaw": 0.2})  # a hand on a slider stops it
     assert not page.evaluate("() => naoKin.player.playing")
+
+
+def test_a_walk_moves_the_body_and_leaves_the_standing_feet_where_they_are(shown: Show) -> None:
+    phantomx = robot("phantomx")
+    walked = walk(phantomx, WalkCommand(gait="ripple", velocity=(0.05, 0.0), turn=0.2, duration=2.0))
+    page = shown(phantomx, walked).page
+    assert drawn(page) > 0.005
+    feet = [f"leg_{leg}" for leg in LEGS]
+    chains = page.evaluate("() => naoKin.state.scene.chains.map(({ name, tip }) => [name, tip])")
+    tips = [dict(chains)[name] for name in feet]
+    start = np.linalg.inv(walked.T_world_body[0])
+    for sample in (0, 60, 123, len(walked.attempt) - 1):
+        slide(page, "#scrub", float(walked.attempt.times[sample]))
+        found = page.evaluate("(tips) => tips.map((tip) => naoKin.state.world[tip].slice(12, 15))", tips)
+        expected = walked.feet[sample] @ start[:3, :3].T + start[:3, 3]
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
+    moved = page.evaluate("() => naoKin.state.body.slice(12, 15)")
+    assert np.linalg.norm(moved) > 0.03
+    with pytest.raises(nk.NaoKinError, match="walk: expected one that can be walked"):
+        shown(phantomx, walk(phantomx, WalkCommand(velocity=(0.6, 0.0), duration=1.0)))
 
 
 def test_the_curves_show_values_speeds_and_limits(shown: Show) -> None:

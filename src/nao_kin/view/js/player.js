@@ -51,21 +51,24 @@ class Player {
     return values;
   }
 
-  // Pairs of joint and value at a time.
-  pairs(time) {
-    const { times, q, joints, iterates } = this.motion;
+  // Numbers of the samples, rows of the same length, at a time: straight between two of them.
+  between(rows, time) {
+    const { times, iterates } = this.motion;
+    if (times.length < 2 || iterates) return rows[iterates ? Math.round(time) : 0];
     let low = 0, k = times.length - 1; // the samples around the time
     while (k - low > 1) {
       const middle = low + k >> 1;
       if (times[middle] <= time) low = middle;
       else k = middle;
     }
-    if (times.length < 2 || iterates) {
-      const sample = iterates ? Math.round(time) : 0;
-      return joints.map((joint, column) => [joint, q[sample][column]]);
-    }
     const share = Math.min(Math.max((time - times[k - 1]) / (times[k] - times[k - 1]), 0), 1);
-    return joints.map((joint, column) => [joint, q[k - 1][column] + share * (q[k][column] - q[k - 1][column])]);
+    return rows[k].map((value, column) => rows[k - 1][column] + share * (value - rows[k - 1][column]));
+  }
+
+  // Pairs of joint and value at a time.
+  pairs(time) {
+    const values = this.between(this.motion.q, time);
+    return this.motion.joints.map((joint, column) => [joint, values[column]]);
   }
 
   go(time) {
@@ -75,6 +78,7 @@ class Player {
 
   at(time) {
     this.time = Math.min(Math.max(time, this.start), this.end);
+    if (this.motion.body) this.state.body = this.between(this.motion.body, this.time);
     this.state.assign(this.pairs(this.time), "play");
     this.tell();
   }
@@ -123,13 +127,14 @@ class Player {
   // The paths of the tips; of a solver's iterates one for each start.
   paths(marks) {
     if (!marks) return;
-    const { tips, starts, times } = this.motion;
+    const { tips, starts, times, body } = this.motion;
+    const at = (sample) => (body ? body[sample] : identity());
     if (!tips.length) return;
     [...new Set(starts ?? [0])].forEach((run, k) => {
       const samples = times.map((_, sample) => sample).filter((sample) => !starts || starts[sample] === run);
       const step = Math.max(1, Math.ceil((samples.length - 1) / PATH_PIECES));
       const chosen = samples.filter((_, index) => index % step === 0 || index === samples.length - 1);
-      const worlds = chosen.map((sample) => this.state.poses(this.values(sample), identity()).world);
+      const worlds = chosen.map((sample) => this.state.poses(this.values(sample), at(sample)).world);
       for (const chain of tips) {
         const { tip } = this.state.scene.chains[chain];
         marks.path(worlds.map((world) => origin(world[tip])), START_COLOURS[k % START_COLOURS.length]);
