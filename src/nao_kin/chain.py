@@ -54,8 +54,8 @@ class ChainJoint:
     Attributes:
         name: Joint name; of coupled joints, the leader.
         kind: ``"revolute"`` [rad], ``"continuous"`` [rad, no limits] or ``"prismatic"`` [m].
-        lower: Least value, −inf where there is none.
-        upper: Greatest value, +inf where there is none.
+        lower: Least value [rad or m], −inf where there is none.
+        upper: Greatest value [rad or m], +inf where there is none.
         max_velocity: Greatest speed [rad/s or m/s], +inf where none is known.
     """
 
@@ -148,13 +148,13 @@ class Chain(JointSpace, Protocol):
         """The flat form that compiled code runs on."""
 
     def pose(self, q: ArrayLike) -> pin.SE3:
-        """T_base_tip at q."""
+        """T_base_tip at q (n,) [rad, m]."""
 
     def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
         """Rotation (3, 3) and position (3,) of `pose` at a q that is not checked; to be read at once and not kept."""
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base or tip axes."""
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of that frame."""
 
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (m, 4, 4) in the base frame of the link behind each of the m physical joints of the path."""

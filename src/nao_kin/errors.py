@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AuditError",
     "InvalidInputError",
+    "KeyframeFileError",
     "MissingExtraError",
     "NaoKinError",
     "NoPathError",
@@ -159,6 +160,10 @@ class TrajectoryFileError(_FileError):
     def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, column: int | None = None) -> None:
         super().__init__(path, line, reason if column is None else f"column {column}: {reason}", hint)
         self.column = column
+
+
+class KeyframeFileError(_FileError):
+    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

@@ -162,7 +162,7 @@ class UrdfChain:
         return placement.rotation, placement.translation
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of base or tip frame.
 
         Raises:
             InvalidInputError: Wrong length, not finite, or another frame than these two.

@@ -11,6 +11,7 @@ import nbformat
 import numpy as np
 import pytest
 from PIL import Image
+
 from tests.conftest import needs
 
 with warnings.catch_warnings():

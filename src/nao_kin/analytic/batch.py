@@ -67,7 +67,7 @@ class BatchSolutions:
         return np.asarray(self.codes == SOLVED)
 
     def branch(self, row: int, place: int) -> str:
-        """The branch of a solution in words; empty where there is none."""
+        """The branch of the solution at a row and a place in it, in words; empty where there is none."""
         number, singularity = self.branches[row, place].tolist()
         return self.form.label(number, singularity) if self.codes[row, place] != ABSENT else ""
 
@@ -114,6 +114,9 @@ def solve_all_batch(
         tolerances: When a target counts as reached.
         seed: For the sample.
         audit: ``"sample"`` or ``"all"``.
+
+    Returns:
+        A row of solutions a target, those within limits first.
 
     Raises:
         InvalidInputError: Wrong shapes, not finite, not rigid (the row is named), mixed kinds, or no form fits.

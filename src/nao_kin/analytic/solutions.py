@@ -197,6 +197,9 @@ def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
         results: What `solve_all` returned.
         q: Joints to come from (n,) [rad or m].
 
+    Returns:
+        One of the results, as it is.
+
     Raises:
         InvalidInputError: No result at all, or q of a wrong length or not finite.
     """

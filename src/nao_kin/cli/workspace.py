@@ -64,15 +64,16 @@ def _data(reach: ReachMap) -> dict[str, Any]:
 
 
 def _scene(chain: Chain, reach: ReachMap) -> Scene:
-    """The map around its robot, or by itself where the chain is a table."""
+    """The map around its robot, or around the stick figure of a table."""
     import numpy as np
 
     from nao_kin.urdf_chain import UrdfChain
-    from nao_kin.view.scene import Scene, robot_scene
+    from nao_kin.view.overlay import chain_scene
+    from nao_kin.view.robot_scene import robot_scene
     from nao_kin.view.workspace_scene import with_workspace
 
     if not isinstance(chain, UrdfChain):
-        return with_workspace(Scene(chain.name, ()), reach, np.eye(4))
+        return with_workspace(chain_scene(chain), reach, np.eye(4))
     robot = chain.robot
     if chain.base == robot.root:
         T_root_base = np.eye(4)

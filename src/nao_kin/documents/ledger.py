@@ -145,6 +145,9 @@ def ledger(claim: str | None = None, *, document: str | None = None, failing: bo
         document: Only those of this document, for example ``"000"``.
         failing: Only those that fail as printed.
 
+    Returns:
+        One judgement a claim, in the order of the documents.
+
     Raises:
         UnknownNameError: There is no such claim or document; carries near matches.
     """

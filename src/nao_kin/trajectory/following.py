@@ -40,7 +40,7 @@ class FollowResult:
     """A path in joint space, and in time where it has times.
 
     Attributes:
-        q: Joints (k, n) of the samples that were reached, in order; read-only.
+        q: Joints (k, n) [rad or m] of the samples that were reached, in order; read-only.
         samples: Number of samples asked for.
         status: Why it ended; `Status.SOLVED` if at the last sample.
         cause: What stopped it, `Cause.NONE` if nothing did.
@@ -109,7 +109,7 @@ class FollowResult:
 
     @property
     def slowed(self) -> float:
-        """How many times as long it takes as was planned; 1 without times."""
+        """How many times as long it takes as was planned, a plain number; 1 without times."""
         if self.trajectory is None or not self.planned_duration:
             return 1.0
         return self.trajectory.duration / self.planned_duration
@@ -147,6 +147,9 @@ def follow(
         method: A name in `nao_kin.METHODS`; ``"closed"`` takes at each sample the branch nearest to the one before.
         tolerances: When a sample counts as reached.
         name: Name of the trajectory.
+
+    Returns:
+        The joints as far as the path was followed, with why it ended and what was measured on the way.
 
     Raises:
         InvalidInputError: An empty path, a bad target, times that do not fit, limits or a jump that are not positive.
