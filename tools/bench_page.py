@@ -38,6 +38,7 @@ RUNS: Final[dict[str, tuple[str, ...]]] = {
     "closed": (),
     "sixr": ("--peers",),
     "tips": (),
+    "reach": (),
     "practicum": (),
     "explain": (),
     "mutants": (),
