@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
+import sys
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -65,3 +66,15 @@ def mimic(tmp_path: Path) -> nk.Robot:
     path = tmp_path / "m.urdf"
     path.write_text(MIMIC)
     return nk.load(path)
+
+
+@pytest.fixture
+def this_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Makes notebooks run on this very interpreter, whatever kernels the machine has."""
+    kernel = tmp_path / "kernels" / "python3"
+    kernel.mkdir(parents=True)
+    (kernel / "kernel.json").write_text(
+        f'{{"argv": ["{sys.executable}", "-m", "ipykernel_launcher", "-f", "{{connection_file}}"], '
+        '"display_name": "Python 3", "language": "python"}'
+    )
+    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path), prepend=os.pathsep)

@@ -54,6 +54,8 @@ if TYPE_CHECKING:
     from nao_kin.trajectory.paths import PoseLine as PoseLine
     from nao_kin.trajectory.paths import PositionLine as PositionLine
     from nao_kin.trajectory.paths import Screw as Screw
+    from nao_kin.trajectory.replaying import Replay as Replay
+    from nao_kin.trajectory.replaying import replay as replay
     from nao_kin.trajectory.timing import timed as timed
     from nao_kin.trajectory.trajectory import Trajectory as Trajectory
     from nao_kin.trajectory.trapezoid import Trapezoid as Trapezoid
@@ -85,6 +87,7 @@ _HOME = {
     "PoseLine": "trajectory.paths",
     "PositionLine": "trajectory.paths",
     "ReachMap": "workspace.reach_map",
+    "Replay": "trajectory.replaying",
     "Report": "checks.finding",
     "Robot": "robot",
     "Screw": "trajectory.paths",
@@ -110,6 +113,7 @@ _HOME = {
     "project_to_reach": "ik.border",
     "reachability": "workspace.mapping",
     "read_trajectory": "trajectory.files",
+    "replay": "trajectory.replaying",
     "robot_names": "known",
     "show": "view.export",
     "solve": "solving",

@@ -19,7 +19,7 @@ _COLOURS = {"": "", "good": "green", "bad": "red", "faint": "dim"}
 # The page around is the notebook's, light or dark: colours are of middle lightness, and everything else is inherited.
 _CSS = {"": "", "good": "color:#2a9153", "bad": "color:#d6453d", "faint": "opacity:0.65"}
 _TITLE = "text-align:left;font-weight:600"
-_FOLDED = 25
+_FOLDED = 40
 """Rows from which on a table in HTML is folded, so that a notebook stays a page one can read."""
 
 

@@ -8,6 +8,7 @@ import trimesh
 from tests.conftest import robot
 
 import nao_kin as nk
+from nao_kin.view.contents import scene_of
 from nao_kin.view.page import page
 from nao_kin.view.scene import Scene, bounds
 from nao_kin.view.workspace_scene import with_workspace, workspace_meshes
@@ -39,6 +40,18 @@ def test_it_stands_in_its_base_frame_and_is_said_in_words(reach: nk.ReachMap) ->
     assert "m³/rad³" in text
     assert "dark 0 to yellow" in text
     assert "LArm" in page(scene)
+
+
+def test_a_robot_is_shown_inside_its_map(reach: nk.ReachMap) -> None:
+    nao = robot("nao")
+    from_foot = nk.reachability(nao.chain("l_sole", "LArm"), 5000, voxel=0.05)
+    for found in (reach, from_foot):
+        scene = scene_of(nao, found)
+        T_root_base = nao.pose(nao.neutral, found.base_name).homogeneous
+        np.testing.assert_allclose(scene.nodes[-1].placement, T_root_base, atol=1e-12)
+        assert len(scene.nodes) == len(scene_of(nao).nodes) + 1
+    with pytest.raises(nk.NaoKinError, match="no frame 'torso'"):
+        scene_of(robot("jaco2"), reach)
 
 
 def test_without_a_measure_the_section_shows_counts() -> None:

@@ -25,19 +25,26 @@ def html(
         Path | None, typer.Option(help="JSON file of one posture [rad, m], or of several by name.")
     ] = None,
     trajectory: Annotated[Path | None, typer.Option(help="A trajectory file, to be played.")] = None,
+    gait: Annotated[str | None, typer.Option(help="A hexapod walks: tripod, ripple or wave.")] = None,
     max_mb: Annotated[float, typer.Option(help="Largest page [MB]; meshes are simplified to stay below it.")] = 5.0,
 ) -> None:
     """Write one self-contained HTML page of a robot: no server, no network.
 
-    It shows the robot in its neutral posture, or with one of --posture, --postures and --trajectory. Pages of solutions
-    are written by nao-kin ik --html, of comparisons by nao-kin compare --html.
+    It shows the robot in its neutral posture, or with one of --posture, --postures, --trajectory and --gait. Pages of
+    solutions are written by nao-kin ik --html, of comparisons by nao-kin compare --html.
     """
     from nao_kin.robot import load
     from nao_kin.view.export import export_html
 
-    if sum(map(bool, (posture, postures, trajectory))) > 1:
-        raise typer.BadParameter("one of --posture, --postures and --trajectory is enough.")
+    if sum(map(bool, (posture, postures, trajectory, gait))) > 1:
+        raise typer.BadParameter("one of --posture, --postures, --trajectory and --gait is enough.")
     model = load(robot)
+    if gait is not None:
+        from nao_kin.motion.gait import walk
+        from nao_kin.motion.walk_command import WalkCommand
+
+        typer.echo(f"wrote {export_html(output, model, walk(model, WalkCommand(gait=gait)), max_mb=max_mb)}", err=True)
+        return
     content = parse_posture(posture, deg, model) if posture else _content(postures, trajectory)
     typer.echo(f"wrote {export_html(output, model, content, max_mb=max_mb)}", err=True)
 

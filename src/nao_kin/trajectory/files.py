@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from nao_kin.trajectory.trajectory import Trajectory
 
-__all__ = ["LARGEST_FILE", "format_trajectory", "parse_trajectory", "read_trajectory", "write_trajectory"]
+__all__ = ["LARGEST_FILE", "form_of", "format_trajectory", "parse_trajectory", "read_trajectory", "write_trajectory"]
 
 LARGEST_FILE: Final = 1 << 26
 """A file of more bytes is refused; this is an hour of six joints at the usual sampling time."""
@@ -37,7 +37,7 @@ def write_trajectory(path: str | os.PathLike[str], trajectory: Trajectory) -> Pa
         OSError: The file cannot be written.
     """
     target = Path(path)
-    text = format_trajectory(trajectory, _form(target))
+    text = format_trajectory(trajectory, form_of(target))
     target.write_text(text, encoding="utf-8", newline="\n")
     return target
 
@@ -57,7 +57,7 @@ def read_trajectory(path: str | os.PathLike[str]) -> Trajectory:
             does not increase, a unit that does not fit; carries the line and the column.
     """
     file = Path(path)
-    name, form = str(path), _form(file)
+    name, form = str(path), form_of(file)
     try:
         if not file.is_file():
             raise TrajectoryFileError(name, None, "no such file." if not file.exists() else "not a regular file.")
@@ -99,8 +99,13 @@ def parse_trajectory(text: str, form: str, path: str = "<trajectory>") -> Trajec
     return parse_rows(text, path, "csv" if _known(form) == "csv" else "txt")
 
 
-def _form(path: Path) -> str:
-    return _known(path.suffix.lower().removeprefix("."), str(path))
+def form_of(path: str | os.PathLike[str]) -> str:
+    """The form that a file's name asks for: ``"txt"``, ``"csv"`` or ``"json"``.
+
+    Raises:
+        InvalidInputError: Another ending.
+    """
+    return _known(Path(path).suffix.lower().removeprefix("."), str(path))
 
 
 def _known(form: str, path: str = "") -> str:

@@ -88,9 +88,9 @@ class FollowResult:
             ("samples reached", f"{len(self.q)} of {self.samples}"),
             ("largest move of a joint [rad or m]", f"{self.largest_move:.4g}, to sample {self.largest_move_at}"),
             ("largest position error [m]", f"{self.max_position_error:.3g}"),
-            ("  between samples [m]", f"{self.position_error_between:.3g}"),
+            ("position error between samples [m]", f"{self.position_error_between:.3g}"),
             ("largest rotation error [rad]", f"{self.max_rotation_error:.3g}"),
-            ("  between samples [rad]", f"{self.rotation_error_between:.3g}"),
+            ("rotation error between samples [rad]", f"{self.rotation_error_between:.3g}"),
             ("smallest singular value", f"{self.smallest_singular_value:.3g}, at {self.smallest_singular_value_at}"),
             *(() if self.trajectory is None else (("duration [s]", f"{self.trajectory.duration:.4g}"),)),
         )

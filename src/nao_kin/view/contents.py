@@ -14,6 +14,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Curve, Goal, Motion, NamedPosture, Panel, Scene, SceneChain
+from nao_kin.view.workspace_scene import with_workspace
 
 if TYPE_CHECKING:
     from nao_kin.analytic.solutions import Solutions
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
     from nao_kin.ik.problem import IKResult
     from nao_kin.ik.target import Target
     from nao_kin.ik.tree_problem import TreeResult
+    from nao_kin.motion.gait import Walk
     from nao_kin.trajectory import Trajectory
     from nao_kin.tree import Tree
+    from nao_kin.workspace.reach_map import ReachMap
 
 __all__ = ["Content", "Subject", "scene_of"]
 
@@ -30,7 +33,14 @@ Subject: TypeAlias = Union[Robot, "Chain", "IKResult", "TreeResult", "Solutions"
 """What a page is about."""
 
 Content: TypeAlias = Union[
-    "Mapping[str, float]", "Mapping[str, Mapping[str, float]]", "Trajectory", "IKResult", "TreeResult", "Solutions"
+    "Mapping[str, float]",
+    "Mapping[str, Mapping[str, float]]",
+    "Trajectory",
+    "Walk",
+    "ReachMap",
+    "IKResult",
+    "TreeResult",
+    "Solutions",
 ]
 """What a robot is shown with."""
 
@@ -42,14 +52,14 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
     Args:
         subject: A robot, a chain, a result, all solutions, or a comparison.
-        content: For a robot: a posture, named postures, a trajectory, or a result or solutions of one of its chains;
-            None means its neutral posture.
+        content: For a robot: a posture, named postures, a trajectory, a walk, a map of where a tip can be, or a
+            result or solutions of one of its chains; None means its neutral posture.
         explain: Of a comparison: whether to say what accounts for a disagreement, which may have to be searched.
 
     Raises:
         UnknownNameError: A posture or trajectory names a joint that the robot does not have.
-        InvalidInputError: Nothing of the above, values that are not finite or contradict a coupling, no solutions, or a
-            result of another robot.
+        InvalidInputError: Nothing of the above, values that are not finite or contradict a coupling, no solutions, a
+            walk that is refused, or a result of another robot.
     """
     if isinstance(subject, Robot):
         return _robot_with(subject, content)
@@ -59,10 +69,17 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
 
 def _robot_with(robot: Robot, content: Any) -> Scene:
+    from nao_kin.motion.gait import Walk
     from nao_kin.trajectory import Trajectory
+    from nao_kin.workspace.reach_map import ReachMap
 
     if content is None:
         return robot_scene(robot)
+    if isinstance(content, Walk):
+        return _walk_scene(robot, content)
+    if isinstance(content, ReachMap):
+        T_root_base = robot.pose(robot.neutral, content.base_name).homogeneous
+        return with_workspace(robot_scene(robot), content, T_root_base)
     if isinstance(content, Trajectory):
         return _trajectory_scene(robot, content)
     if isinstance(content, Mapping):
@@ -90,8 +107,8 @@ def _scene(subject: Any, explain: bool) -> Scene:
         case Chain():
             return chain_scene(subject)
     expected = (
-        "a robot, a chain, an IKResult, Solutions or a Comparison; with a robot also a posture, named postures or a "
-        "Trajectory"
+        "a robot, a chain, an IKResult, Solutions or a Comparison; with a robot also a posture, named postures, a "
+        "Trajectory, a Walk or a ReachMap"
     )
     raise InvalidInputError("what to show", expected, repr(subject)[:60])
 
@@ -129,9 +146,36 @@ def _trajectory_scene(robot: Robot, trajectory: Trajectory) -> Scene:
             if np.abs(trajectory.column(name) - wanted).max() > 1e-9:
                 raise InvalidInputError(f"trajectory, {name}", f"values that follow {c.leader}", "others")
     name = trajectory.name or "trajectory"
-    motion = Motion(name, trajectory.joint_names, trajectory.times, np.round(trajectory.q, DIGITS), tips=(0,))
+    moved = {leaders[joint].leader if joint in leaders else joint for joint in trajectory.joint_names}
+    shared = [len(moved & _motors(scene, chain)) for chain in scene.chains]
+    tips = sorted((k for k, count in enumerate(shared) if count), key=lambda k: -shared[k])
+    motion = Motion(name, trajectory.joint_names, trajectory.times, np.round(trajectory.q, DIGITS), tips=tuple(tips))
     produced = f"{name}, {len(trajectory)} samples over {trajectory.duration:.4g} s"
     return replace(scene, motion=motion, produced=produced, legs=())
+
+
+def _walk_scene(robot: Robot, walk: Walk) -> Scene:
+    """The joints, and the robot over the ground as the walk has it; where it stands first is where it is drawn."""
+    if walk.trajectory is None:
+        raise InvalidInputError("walk", "one that can be walked", walk.message.rstrip("."))
+    scene = _trajectory_scene(robot, walk.trajectory)
+    T_start_root = np.round(np.linalg.inv(walk.T_world_body[0]) @ walk.T_world_body, DIGITS)
+    motion = replace(cast("Motion", scene.motion), body=T_start_root, tips=tuple(range(len(scene.chains))))
+    return replace(scene, motion=motion, notes=(*scene.notes, walk.message))
+
+
+def _motors(scene: Scene, chain: SceneChain) -> set[str]:
+    """The joints that move a chain, each by its leader, from its tip down to its base or the root."""
+    leaders = {joint.name: joint.leader or joint.name for joint in scene.joints}
+    found, index = set(), chain.tip
+    while index != chain.base:
+        node = scene.nodes[index]
+        if node.drive is not None:
+            found.add(leaders[node.drive.joint])
+        if node.parent is None:
+            break
+        index = node.parent
+    return found
 
 
 def _space_of(content: Any) -> JointSpace:

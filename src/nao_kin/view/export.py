@@ -66,8 +66,8 @@ def export_html(
         path: Where to write; an existing file is replaced.
         subject: A `Robot`; or a chain, an `IKResult`, a `TreeResult`, what `solve_all` or `compare` returned.
         content: What a robot is shown with: a posture (joint name to angle [rad] or offset [m]; joints not named are
-            at 0), named postures (name to posture, the first one solid and the others as ghosts), a `Trajectory`, or a
-            result or solutions of one of its chains. None means `robot.neutral`.
+            at 0), named postures (name to posture, the first one solid and the others as ghosts), a `Trajectory`, a
+            `Walk`, a `ReachMap`, or a result or solutions of one of its chains. None means `robot.neutral`.
         explain: Whether the page of a comparison says what accounts for the disagreement, which may have to be
             searched first.
         max_mb: Largest page [MB]; meshes are simplified to stay below it.

@@ -24,7 +24,7 @@ def limbs(robot: Robot) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Joint names by limb, each limb and joint in the order in which the tree has them.
 
     The limbs are the robot's named chains; a joint on none of them goes with the nearest one above it, as a hand with
-    its arm. A robot without named chains is taken apart where its tree forks into long branches.
+    its arm. A robot without named chains is taken apart where its tree forks: each long branch is a limb.
     """
     by_limb: dict[str, list[str]] = {}
     owner = _named_owners(robot) if robot.chain_frames else {}
@@ -36,16 +36,16 @@ def limbs(robot: Robot) -> tuple[tuple[str, tuple[str, ...]], ...]:
             title = owner.get(upper.name, "") or forks.get(upper.name, "")
             link = upper.parent
         by_limb.setdefault(title or "trunk", []).append(joint.name)
-    return tuple((title.replace("_", " "), tuple(names)) for title, names in by_limb.items())
+    return tuple((title, tuple(names)) for title, names in by_limb.items())
 
 
 def _named_owners(robot: Robot) -> dict[str, str]:
-    """Joint name to the first named chain whose path it is on."""
+    """Joint name to the first named chain whose path it is on, in words."""
     owner: dict[str, str] = {}
     for name, (base, tip) in robot.chain_frames.items():
         for joint in (joint for part in robot.path(base, tip) for joint in part):
             if joint.kind != "fixed":
-                owner.setdefault(joint.name, name)
+                owner.setdefault(joint.name, name.replace("_", " "))
     return owner
 
 
@@ -66,7 +66,7 @@ def _forks(robot: Robot) -> dict[str, str]:
     found = {}
     for names in children.values():
         long = [name for name in names if size[name] >= LIMB]
-        for name in long if len(long) > 1 else ():
+        for name in long if sum(size[name] > 0 for name in names) > 1 else ():
             first = name
             while first not in moving:  # a fixed joint at the root of a limb says little
                 first = max(children[by_name[first].child], key=lambda below: size[below])

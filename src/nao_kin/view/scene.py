@@ -182,6 +182,7 @@ class Motion:
         curves: What is drawn over them besides the joints, on a logarithmic scale.
         tips: Indices of chains whose tips' paths are drawn.
         starts: Number of the start each iterate belongs to, (N,); None for a motion.
+        body: T_ground_root (N, 4, 4), where the whole robot moves over the ground; None where it stays.
     """
 
     name: str
@@ -192,6 +193,7 @@ class Motion:
     curves: tuple[Curve, ...] = ()
     tips: tuple[int, ...] = ()
     starts: NDArray[np.int64] | None = None
+    body: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -115,6 +115,7 @@ def _motion(motion: Motion, number: Mapping[str, int]) -> dict[str, Any]:
         "curves": [{"name": c.name, "unit": c.unit, "y": _finite_all(c.y.tolist())} for c in motion.curves],
         "tips": list(motion.tips),
         "starts": None if motion.starts is None else motion.starts.tolist(),
+        "body": None if motion.body is None else [_columns(pose) for pose in motion.body],
     }
 
 

@@ -23,7 +23,8 @@ class BodyPanel {
     const level = button("Level", "Body back to where it stood", () => this.level());
     level.id = "level";
     this.element = section("Body over its feet", el("div", { class: "body" },
-      ...this.rows.map(({ name, slider, value }) => el("label", { class: "field" }, el("span", {}, name), slider, value)),
+      ...this.rows.map(({ name, slider, value }) =>
+        el("label", { class: "field" }, el("span", {}, name), slider, value)),
       el("div", { class: "tools" }, level), this.told), { id: "body" });
     state.listen((_, cause) => { if (cause !== "body") this.stand(); });
     units.listeners.push(() => this.tell());
@@ -64,7 +65,8 @@ class BodyPanel {
     this.state.assign(pairs, "body");
     this.paint(chosen.flatMap(({ reason }, k) => {
       const miss = length(minus(origin(this.state.world[this.legs[k].foot]), this.feet[k]));
-      return reason || miss > REACHED ? [{ leg: k, reason: reason || `its foot is ${few(1e3 * miss)} mm off` }] : [];
+      if (!reason && miss <= REACHED) return [];
+      return [{ leg: k, reason: reason || `its foot is ${few(1e3 * miss)} mm off` }];
     }));
     this.tell();
   }
@@ -74,14 +76,14 @@ class BodyPanel {
   solve(leg, p) {
     const now = leg.joints.map((joint) => this.valuesAtStart[joint]);
     const ranges = leg.joints.map((joint) => this.state.range(joint));
+    const lower = ranges.map(([end]) => end ?? -Infinity), upper = ranges.map(([, end]) => end ?? Infinity);
     const windings = (q) => q.map((value, k) => {
-      const [lower, upper] = ranges[k], middle = lower === null || upper === null ? 0 : (lower + upper) / 2;
-      return value + 2 * Math.PI * Math.round((middle - value) / (2 * Math.PI));
+      const middle = (lower[k] + upper[k]) / 2 || 0; // 0 where there are no limits
+      return Number.isFinite(middle) ? value + 2 * Math.PI * Math.round((middle - value) / (2 * Math.PI)) : value;
     });
-    const excess = (q) => Math.max(...q.map((value, k) => Math.max((ranges[k][0] ?? -Infinity) - value,
-      value - (ranges[k][1] ?? Infinity), 0)));
+    const excess = (q) => Math.max(0, ...q.map((value, k) => Math.max(lower[k] - value, value - upper[k])));
     const moved = (q) => Math.max(...q.map((value, k) => Math.abs(wrapped(value - now[k]))));
-    const clipped = (q) => q.map((value, k) => Math.min(Math.max(value, ranges[k][0] ?? -Infinity), ranges[k][1] ?? Infinity));
+    const clipped = (q) => q.map((value, k) => Math.min(Math.max(value, lower[k]), upper[k]));
     const least = (list, cost) => list.reduce((best, q) => (cost(q) < cost(best) ? q : best));
     const found = legSolutions(leg.numbers, p).map(windings);
     const inside = found.filter((q) => excess(q) <= LIMIT_TOLERANCE);
@@ -102,10 +104,12 @@ class BodyPanel {
     });
   }
 
-  // The nodes between body and foot.
-  nodesOf({ base, foot }) {
-    const found = [];
-    for (let node = foot; node !== base && node >= 0; node = this.state.scene.nodes[node].parent) found.push(node);
+  // The nodes from the first joint to the foot.
+  nodesOf({ foot, joints }) {
+    const { nodes } = this.state.scene, found = [foot];
+    while (nodes[found.at(-1)].drive?.joint !== joints[0] && nodes[found.at(-1)].parent >= 0) {
+      found.push(nodes[found.at(-1)].parent);
+    }
     return found;
   }
 

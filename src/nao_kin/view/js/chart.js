@@ -29,7 +29,8 @@ class Chart {
     const xs = series.flatMap(({ x }) => [x[0], x[x.length - 1]]);
     const ys = [...series.flatMap(({ y }) => y.map(shown)), ...limits.map(({ value }) => shown(value))]
       .filter((y) => y !== null);
-    [this.low, this.high] = [ys.reduce((a, b) => Math.min(a, b), Infinity), ys.reduce((a, b) => Math.max(a, b), -Infinity)];
+    this.low = ys.reduce((a, b) => Math.min(a, b), Infinity);
+    this.high = ys.reduce((a, b) => Math.max(a, b), -Infinity);
     if (!ys.length) [this.low, this.high] = [0, 1];
     const margin = 0.06 * (this.high - this.low) || (logarithmic ? 0.5 : 1e-3);
     this.low -= margin;
@@ -44,7 +45,8 @@ class Chart {
       ...limits.map(({ value }) => svg("line", {
         class: "bound", x1: left, x2: width - right, y1: this.y(shown(value)), y2: this.y(shown(value)),
       })),
-      ...series.map(({ x, y, colour }) => svg("path", { class: "curve", stroke: colour, d: this.path(x, y.map(shown)) })),
+      ...series.map(({ x, y, colour }) =>
+        svg("path", { class: "curve", stroke: colour, d: this.path(x, y.map(shown)) })),
       this.cursor);
     this.element.firstChild.textContent = unit ? `${title} [${unit}]` : title;
     if (onscrub) this.element.addEventListener("pointerdown", (event) => this.scrub(event, onscrub));
@@ -57,7 +59,8 @@ class Chart {
     for (const value of ticks(this.low, this.high, 4)) {
       const text = svg("text", { class: "tick", x: left - 6, y: this.y(value) + 3.5, "text-anchor": "end" });
       text.textContent = this.logarithmic ? power(Math.round(value * 1e6) / 1e6) : shortened(value, 6);
-      lines.push(svg("line", { class: "grid", x1: left, x2: width - right, y1: this.y(value), y2: this.y(value) }), text);
+      const y = this.y(value);
+      lines.push(svg("line", { class: "grid", x1: left, x2: width - right, y1: y, y2: y }), text);
     }
     for (const value of ticks(this.start, this.end, 6)) {
       const text = svg("text", { class: "tick", x: this.x(value), y: height - bottom + 13, "text-anchor": "middle" });

@@ -62,6 +62,6 @@ function legMissesBy(leg, p) {
   const longest = leg[LEG.femur] + leg[LEG.tibia], shortest = Math.abs(leg[LEG.femur] - leg[LEG.tibia]);
   if (near > longest) return near - longest;
   if (far < shortest) return far - shortest;
-  if (e === 0 && near < shortest && far > longest) return far - longest < shortest - near ? far - longest : near - shortest;
-  return 0;
+  if (e !== 0 || near >= shortest || far <= longest) return 0;
+  return far - longest < shortest - near ? far - longest : near - shortest; // too near pointing at it, too far beyond
 }

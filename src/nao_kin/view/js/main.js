@@ -55,7 +55,8 @@ function sizeOf(points) {
 // Everything that is drawn besides the robot, and the switches for it.
 function drawExtras(stage, marks, labels, state, scene) {
   const named = scene.nodes.flatMap((node, index) => (node.label ? [index] : []));
-  const framed = frameMarks(marks, scene.framed), frames = frameMarks(marks, named), axes = jointAxisMarks(marks, scene);
+  const framed = frameMarks(marks, scene.framed), frames = frameMarks(marks, named);
+  const axes = jointAxisMarks(marks, scene);
   const rods = scene.rods.map((rod) => ({ ...rod, mesh: marks.solid("rod", rod.colour) }));
   const ends = ({ start, end }) => [origin(state.world[start]), origin(state.world[end])];
   for (const rod of rods.filter((each) => each.measured).reverse()) {
@@ -68,7 +69,7 @@ function drawExtras(stage, marks, labels, state, scene) {
   scene.nodes.forEach((node, index) => {
     if (!node.drive || !node.label) return;
     const text = scene.joints[node.drive.joint].name;
-    labels.add("joint", () => (labelled ? { text, point: origin(state.world[index]) } : null));
+    labels.add("name", () => (labelled ? { text, point: origin(state.world[index]) } : null));
   });
   state.listen(() => {
     stage.show(state);
@@ -88,8 +89,8 @@ function drawExtras(stage, marks, labels, state, scene) {
     { id: "collisions", key: "b", text: "collision shapes", on: false, change: dirty((on) => stage.setCollisions(on)) },
   ];
   if (!scene.framed.length) return switches;
-  const own = { id: "link-frames", key: "n", text: "frames of the chains", on: true, change: dirty((on) => framed.show(on, state)) };
-  return [own, ...switches];
+  const change = dirty((on) => framed.show(on, state));
+  return [{ id: "link-frames", key: "n", text: "frames of the chains", on: true, change }, ...switches];
 }
 
 function sheet(onchange) {
@@ -118,7 +119,7 @@ async function start() {
   const exchange = new Exchange(state);
   const tip = scene.nodes.length ? new TipPanel(state, goals) : null;
   const parts = [];
-  if (scene.postures.length) parts.push(new PosturePanel(state, stage).element);
+  if (scene.postures.length) parts.push(new PosturePanel(state, stage, marks).element);
   if (scene.legs.length) parts.push(new BodyPanel(state, stage).element);
   if (tip) parts.push(tip.element);
   if (scene.joints.length) parts.push(jointPanel(state, exchange.element).element);

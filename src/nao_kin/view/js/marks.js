@@ -1,8 +1,7 @@
 // Things drawn beside the robot: rods between nodes, frames, joint axes, paths, targets and what is missing to them.
 
 const AXIS_COLOURS = [0xd63b3b, 0x2f9e44, 0x2f6fd6];
-const JOINT_AXIS_COLOUR = 0xd9940f, PATH_COLOUR = 0x7a4fd0, TARGET_COLOUR = 0x0d8f6f, RESIDUAL_COLOUR = 0xd61f2c;
-const PATH_PIECES = 240; // rods a path is drawn with at most
+const JOINT_AXIS_COLOUR = 0xd9940f, POINTER_COLOUR = 0x7a4fd0, TARGET_COLOUR = 0x0d8f6f, RESIDUAL_COLOUR = 0xd61f2c;
 
 // The transform that puts the unit rod between two points.
 function rodPose(start, end, radius) {
@@ -63,15 +62,22 @@ class Marks {
     };
   }
 
-  // The path of a point; `points` may be many.
-  path(points, colour = PATH_COLOUR) {
-    const step = Math.max(1, Math.ceil((points.length - 1) / PATH_PIECES));
-    const chosen = points.filter((_, index) => index % step === 0 || index === points.length - 1);
-    return chosen.slice(1).map((point, index) => {
-      const rod = this.solid("rod", colour, 0.55);
-      this.stretch(rod, chosen[index], point, 0.8 * this.thin);
-      return rod;
+  // The path of a point.
+  path(points, colour) {
+    points.slice(1).forEach((point, index) => {
+      this.stretch(this.solid("rod", colour, 0.55), points[index], point, 0.8 * this.thin);
     });
+  }
+
+  // Rods like the scene's own, for a ghost.
+  ghostRods(group, rods, world, colour) {
+    for (const { start, end, radius, measured } of rods) {
+      if (measured) continue;
+      const rod = this.solid("rod", colour, 1.6 * GHOST_OPACITY);
+      rod.material.depthWrite = false;
+      this.stretch(rod, origin(world[start]), origin(world[end]), radius);
+      group.add(rod);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // A motion: play, pause, scrub, speed, and its curves. Or the iterates of a solver, one by one.
 
 const ITERATES_A_SECOND = 8;
+const PATH_PIECES = 240; // straight pieces a path is drawn with at most
 const START_COLOURS = [0x7a4fd0, 0x0d8f9f, 0xd9640f, 0x2f9e44];
 
 class Player {
@@ -51,21 +52,24 @@ class Player {
     return values;
   }
 
-  // Pairs of joint and value at a time.
-  pairs(time) {
-    const { times, q, joints, iterates } = this.motion;
+  // Numbers of the samples, rows of the same length, at a time: straight between two of them.
+  between(rows, time) {
+    const { times, iterates } = this.motion;
+    if (times.length < 2 || iterates) return rows[iterates ? Math.round(time) : 0];
     let low = 0, k = times.length - 1; // the samples around the time
     while (k - low > 1) {
       const middle = low + k >> 1;
       if (times[middle] <= time) low = middle;
       else k = middle;
     }
-    if (times.length < 2 || iterates) {
-      const sample = iterates ? Math.round(time) : 0;
-      return joints.map((joint, column) => [joint, q[sample][column]]);
-    }
     const share = Math.min(Math.max((time - times[k - 1]) / (times[k] - times[k - 1]), 0), 1);
-    return joints.map((joint, column) => [joint, q[k - 1][column] + share * (q[k][column] - q[k - 1][column])]);
+    return rows[k].map((value, column) => rows[k - 1][column] + share * (value - rows[k - 1][column]));
+  }
+
+  // Pairs of joint and value at a time.
+  pairs(time) {
+    const values = this.between(this.motion.q, time);
+    return this.motion.joints.map((joint, column) => [joint, values[column]]);
   }
 
   go(time) {
@@ -75,6 +79,7 @@ class Player {
 
   at(time) {
     this.time = Math.min(Math.max(time, this.start), this.end);
+    if (this.motion.body) this.state.body = this.between(this.motion.body, this.time);
     this.state.assign(this.pairs(this.time), "play");
     this.tell();
   }
@@ -83,8 +88,9 @@ class Player {
     const { iterates, starts } = this.motion;
     this.scrubber.value = String(this.time);
     const count = this.motion.times.length - 1, sample = Math.round(this.time);
-    this.clock.textContent = !iterates ? `${this.time.toFixed(2)} / ${this.end.toFixed(2)} s`
-      : `${sample === count ? "returned" : `iterate ${sample}`} of ${count}${starts && starts[count] ? `, start ${starts[sample]}` : ""}`;
+    const which = sample === count ? "returned" : `iterate ${sample} of ${count}`;
+    const start = starts && starts[count] ? `, start ${starts[sample]}` : ""; // where there were several
+    this.clock.textContent = iterates ? which + start : `${this.time.toFixed(2)} / ${this.end.toFixed(2)} s`;
     this.scrubber.setAttribute("aria-valuetext", this.clock.textContent);
     for (const chart of this.charts) chart.point(this.time);
   }
@@ -122,16 +128,19 @@ class Player {
   // The paths of the tips; of a solver's iterates one for each start.
   paths(marks) {
     if (!marks) return;
-    const { tips, starts, times } = this.motion;
-    const worlds = times.map((_, sample) => this.state.poses(this.values(sample), identity()).world);
-    for (const chain of tips) {
-      const points = worlds.map((world) => origin(world[this.state.scene.chains[chain].tip]));
-      const runs = [...new Set(starts ?? [0])];
-      for (const run of runs) {
-        const colour = START_COLOURS[runs.indexOf(run) % START_COLOURS.length];
-        marks.path(starts ? points.filter((_, sample) => starts[sample] === run) : points, colour);
+    const { tips, starts, times, body } = this.motion;
+    const at = (sample) => (body ? body[sample] : identity());
+    if (!tips.length) return;
+    [...new Set(starts ?? [0])].forEach((run, k) => {
+      const samples = times.map((_, sample) => sample).filter((sample) => !starts || starts[sample] === run);
+      const step = Math.max(1, Math.ceil((samples.length - 1) / PATH_PIECES));
+      const chosen = samples.filter((_, index) => index % step === 0 || index === samples.length - 1);
+      const worlds = chosen.map((sample) => this.state.poses(this.values(sample), at(sample)).world);
+      for (const chain of tips) {
+        const { tip } = this.state.scene.chains[chain];
+        marks.path(worlds.map((world) => origin(world[tip])), START_COLOURS[k % START_COLOURS.length]);
       }
-    }
+    });
   }
 
   drawCurves() {
@@ -173,15 +182,17 @@ class Player {
     const bounds = (values) => (only < 0 ? [] : values.filter((value) => value !== null)
       .map((value) => ({ value: value * factor })));
     const middle = times.slice(1).map((time, k) => (time + times[k]) / 2);
-    const speed = (column) => middle.map((_, k) => factor * (q[k + 1][column] - q[k][column]) / (times[k + 1] - times[k]));
+    const rate = (column, k) => (q[k + 1][column] - q[k][column]) / (times[k + 1] - times[k]);
+    const speed = (column) => middle.map((_, k) => factor * rate(column, k));
+    const series = (x, y) => same.map((column) => ({ name: name(column), colour: colour(column), x, y: y(column) }));
     const value = {
-      title: only < 0 ? "joint values" : `${name(only)}, value`, unit: units.unit(slides), limits: bounds([lower, upper]),
-      series: same.map((column) => ({ name: name(column), colour: colour(column), x: times, y: q.map((r) => factor * r[column]) })),
+      title: only < 0 ? "joint values" : `${name(only)}, value`, unit: units.unit(slides),
+      limits: bounds([lower, upper]), series: series(times, (column) => q.map((sample) => factor * sample[column])),
     };
     if (times.length < 2) return [value];
     return [value, {
-      title: "speed", unit: `${units.unit(slides)}/s`, limits: bounds([velocity, velocity === null ? null : -velocity]),
-      series: same.map((column) => ({ name: name(column), colour: colour(column), x: middle, y: speed(column) })),
+      title: "speed", unit: `${units.unit(slides)}/s`,
+      limits: bounds(velocity === null ? [] : [velocity, -velocity]), series: series(middle, speed),
     }];
   }
 }

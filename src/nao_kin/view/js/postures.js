@@ -7,8 +7,8 @@ function hexadecimal(colour) {
 }
 
 class PosturePanel {
-  constructor(state, stage) {
-    Object.assign(this, { state, stage, postures: state.scene.postures });
+  constructor(state, stage, marks) {
+    Object.assign(this, { state, stage, marks, postures: state.scene.postures });
     this.chosen = 0;
     this.ghosts = state.scene.ghosts && this.postures.length > 1;
     const columns = state.scene.columns;
@@ -27,7 +27,8 @@ class PosturePanel {
       if (cause === "joint") this.radios.forEach((radio) => { radio.checked = false; });
     });
     this.element = section("Postures", el("div", {},
-      el("div", { class: "table" }, el("table", { class: "postures" }, el("thead", {}, head), el("tbody", {}, ...rows))),
+      el("div", { class: "table" },
+        el("table", { class: "postures" }, el("thead", {}, head), el("tbody", {}, ...rows))),
       this.postures.length > 1 ? switching.label : null), { id: "postures", count: this.postures.length });
     this.drawGhosts();
   }
@@ -52,6 +53,6 @@ class PosturePanel {
     if (!this.stage) return;
     const others = this.postures.flatMap((posture, index) => (index === this.chosen ? []
       : [{ values: posture.values, colour: GHOST_COLOURS[index % GHOST_COLOURS.length] }]));
-    this.stage.setGhosts(this.state, this.ghosts ? others : []);
+    this.stage.setGhosts(this.state, this.marks, this.ghosts ? others : []);
   }
 }

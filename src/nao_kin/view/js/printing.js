@@ -1,16 +1,20 @@
-// Paper: a canvas may come out blank, so a picture of it is printed instead.
+// Paper: a canvas may come out blank, so a picture of it is printed instead; and what is folded is unfolded.
 
 function preparePrinting(viewer, pane) {
-  let picture = null;
+  let picture = null, unfolded = [];
   const before = () => {
     if (picture) return;
     viewer.render();
-    picture = el("img", { id: "paper", alt: pane.getAttribute("aria-label"), src: viewer.renderer.domElement.toDataURL() });
+    const src = viewer.renderer.domElement.toDataURL();
+    picture = el("img", { id: "paper", alt: pane.getAttribute("aria-label"), src });
     pane.append(picture);
+    unfolded = [...document.querySelectorAll("details.section:not([open])")];
+    for (const part of unfolded) part.open = true;
   };
   const after = () => {
     if (picture) picture.remove();
-    picture = null;
+    for (const part of unfolded) part.open = false;
+    [picture, unfolded] = [null, []];
   };
   window.addEventListener("beforeprint", before);
   window.addEventListener("afterprint", after);

@@ -15,6 +15,15 @@ function setPose(object, pose) {
   object.matrixWorldNeedsUpdate = true;
 }
 
+// A node's own triangles: the viewer hangs each surface below a group of its own, beside the nodes' children.
+function surfacesOf(object) {
+  const found = [];
+  for (const child of object.children) {
+    if (/^m\d+$/.test(child.name)) child.traverse((each) => { if (each.isMesh) found.push(each); });
+  }
+  return found;
+}
+
 class Stage {
   constructor(viewer, scene) {
     this.viewer = viewer;
@@ -36,7 +45,7 @@ class Stage {
   }
 
   // Copies of the robot that share its triangles, one for each posture, tinted.
-  setGhosts(state, ghosts) {
+  setGhosts(state, marks, ghosts) {
     for (const { group } of this.ghosts) this.world.remove(group);
     this.ghosts = ghosts.map(({ values, colour }) => {
       const group = this.robot.clone(true);
@@ -57,6 +66,7 @@ class Stage {
       const objects = local.map((_, index) => byName.get(`n${index}`));
       local.forEach((pose, index) => setPose(objects[index], pose));
       this.world.add(group);
+      marks.ghostRods(group, this.scene.rods, world, colour);
       return { group, world, objects };
     });
     this.thinGhosts(state);
@@ -67,8 +77,9 @@ class Stage {
     const seen = [state.world];
     for (const { world, objects } of this.ghosts) {
       objects.forEach((object, index) => {
-        const covered = seen.some((other) => world[index].every((entry, k) => Math.abs(entry - other[index][k]) < 1e-6));
-        for (const child of object.children) if (child.isMesh) child.visible = !covered;
+        const same = (other) => world[index].every((entry, k) => Math.abs(entry - other[index][k]) < 1e-6);
+        const covered = seen.some(same);
+        for (const surface of surfacesOf(object)) surface.visible = !covered;
       });
       seen.push(world);
     }
@@ -87,10 +98,9 @@ class Stage {
   // Paints the surfaces of some nodes in one colour, or gives them their own back where the colour is null.
   paint(nodes, colour) {
     for (const index of nodes) {
-      for (const child of this.objects[index].children) {
-        if (!child.isMesh) continue;
-        if (!this.colours.has(child)) this.colours.set(child, child.material.color.getHex());
-        child.material.color.set(colour ?? this.colours.get(child));
+      for (const surface of surfacesOf(this.objects[index])) {
+        if (!this.colours.has(surface)) this.colours.set(surface, surface.material.color.getHex());
+        surface.material.color.set(colour ?? this.colours.get(surface));
       }
     }
     this.viewer.set_dirty();

@@ -25,6 +25,8 @@ class TipPanel {
       el("label", { class: "field" }, el("span", {}, "tip"), this.tip),
       row(["x", "y", "z"], this.position, el("span", { class: "unit" }, "m")),
       row(["roll", "pitch", "yaw"], this.angles, this.unit), this.residuals), { id: "tip-pose" });
+    const { motion } = state.scene;
+    this.chain.value = String(motion?.tips[0] ?? goals[0]?.goal.chain ?? 0);
     this.choose();
   }
 
@@ -75,7 +77,7 @@ class GoalMarks {
     this.tipFrame = marks.frame(0.08 * marks.size, marks.thin);
     this.place = marks.solid("ball", TARGET_COLOUR, 0.8);
     this.aim = marks.arrow(TARGET_COLOUR);
-    this.pointer = marks.arrow(PATH_COLOUR);
+    this.pointer = marks.arrow(POINTER_COLOUR);
     this.missing = marks.arrow(RESIDUAL_COLOUR);
     this.turn = marks.arrow(0xb5179e);
     labels.add("target", () => ({ text: "target", point: this.point }));

@@ -57,7 +57,8 @@ class Toolbar {
   }
 
   key(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || keepsKeys(event.target) || document.querySelector("dialog[open]")) return;
+    if (event.ctrlKey || event.altKey || event.metaKey || keepsKeys(event.target)) return;
+    if (document.querySelector("dialog[open]")) return;
     const { target, key } = event;
     const own = target instanceof HTMLButtonElement || target.tagName === "SUMMARY" ||
       (target instanceof HTMLInputElement && ["checkbox", "radio"].includes(target.type));
