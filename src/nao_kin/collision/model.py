@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -20,6 +19,8 @@ from nao_kin.motors import Motors
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from nao_kin.robot import Robot
 
 __all__ = ["DISTANCE_ACCURACY", "CollisionModel", "Excluded", "Proximity"]

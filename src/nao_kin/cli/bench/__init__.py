@@ -8,6 +8,7 @@ from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
+from nao_kin.cli.bench.guard import guard
 from nao_kin.cli.bench.ik import ik
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
@@ -30,6 +31,7 @@ bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
 bench.command()(explain)
+bench.command()(guard)
 bench.command()(methods)
 bench.command()(mutants)
 bench.command()(practicum)
