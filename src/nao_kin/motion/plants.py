@@ -99,7 +99,8 @@ class RigidBodies:
         step: Longest step of integration [s], semi-implicit Euler, the drives running at that rate.
 
     Raises:
-        InvalidInputError: A motor that moves no mass, or numbers that are not above 0.
+        InvalidInputError: A motor that moves no mass, numbers that are not above 0, or a step too long for drives as
+            fast as these.
     """
 
     def __init__(
@@ -110,7 +111,7 @@ class RigidBodies:
         time_constant: float = 0.005,
         armature: ArrayLike = 0.0,
         compensate_gravity: bool = True,
-        step: float = 1e-3,
+        step: float = 5e-4,
     ) -> None:
         n = len(motors.joints)
         self.motors, self.compensate_gravity = motors, compensate_gravity
@@ -123,11 +124,16 @@ class RigidBodies:
         self._model.armature[own] = self.armature
         self._data = self._model.createData()
         self.max_effort = self._efforts()
-        self.inertia: Floats = np.diag(self.mass_matrix(vector(tuned_at, "tuned_at", n))).copy()
+        mass = self.mass_matrix(vector(tuned_at, "tuned_at", n))
+        self.inertia: Floats = np.diag(mass).copy()
         weightless = np.flatnonzero(self.inertia < _LEAST_INERTIA)
         if len(weightless):
             names = ", ".join(motors.joint_names[int(k)] for k in weightless)
             raise InvalidInputError("masses", f"some that {names} move; else give armature=", "none")
+        # Through the other joints a motor feels less than its own inertia, so its drive answers faster than τ.
+        fastest = float(np.linalg.eigvals(np.linalg.solve(mass, np.diag(self.inertia))).real.max()) / self.time_constant
+        if self.step * fastest > 1.9:
+            raise InvalidInputError("step", f"at most {1.9 / fastest:.2g} s for such drives", f"{self.step:g} s")
 
     def at_rest(self, q: Floats) -> PlantState:
         """See `Plant`."""

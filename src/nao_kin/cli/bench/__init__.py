@@ -10,9 +10,11 @@ from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
 from nao_kin.cli.bench.guard import guard
 from nao_kin.cli.bench.ik import ik
+from nao_kin.cli.bench.loop import loop
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
 from nao_kin.cli.bench.practicum import practicum
+from nao_kin.cli.bench.servo import servo
 from nao_kin.cli.bench.sixr import sixr
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
@@ -32,10 +34,12 @@ bench.command()(ik)
 bench.command()(edges)
 bench.command()(explain)
 bench.command()(guard)
+bench.command()(loop)
 bench.command()(methods)
 bench.command()(mutants)
 bench.command()(practicum)
 bench.command()(closed)
+bench.command()(servo)
 bench.command()(sixr)
 bench.command()(startup)
 bench.command()(tips)

@@ -61,9 +61,9 @@ _HEADINGS = (
 )
 _NOTES = (
     "unguarded: the least clearance of the straight motions themselves, below 0 an overlap; least: of what the guard "
-    f"let pass. Both by coal called directly, at {_BETWEEN} instants a cycle. A colliding motion has contact on its way, a "
-    "clear one keeps the margin all the way; both keep the joints' ranges. With changing targets, a new random posture "
-    "every half second, the robot stops or turns round as it can.",
+    f"let pass. Both by coal called directly, at {_BETWEEN} instants a cycle. A colliding motion has contact on its "
+    "way, a clear one keeps the margin all the way; both keep the joints' ranges. With changing targets, a new random "
+    "posture every half second, the robot stops or turns round as it can.",
 )
 
 
@@ -87,7 +87,7 @@ def _measured(robot: str, count: int, seed: int) -> list[dict[str, Any]]:
     rows = []
     for kind in ("colliding", "clear"):
         drawn = progress(_drawn(collisions, referee, rng, kind), f"{robot}, {kind}", count)
-        runs = [(motion, _run(collisions, referee, motion)) for motion, _ in zip(drawn, range(count), strict=False)]
+        runs = [(motion, _run(collisions, referee, motion)) for _, motion in zip(range(count), drawn, strict=False)]
         rows.append(
             {
                 "robot": robot,
