@@ -106,6 +106,7 @@ class Servo:
         speed, change = self.motors.max_velocity, self.acceleration * self.period
         command = np.clip(wanted, -speed, speed)
         command = np.clip(command, self._command - change, self._command + change)
+        # Last, since a joint had better brake too hard than leave its range.
         return np.clip(command, -self._brakes_before(q - self.motors.lower), self._brakes_before(self.motors.upper - q))
 
     def _brakes_before(self, room: Floats) -> Floats:

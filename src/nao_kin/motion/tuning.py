@@ -25,7 +25,8 @@ __all__ = ["FeedForwardComparison", "compare_feed_forward", "overshoot", "tune"]
 
 _LADDER: Final = tuple(float(kp) for kp in np.geomspace(1.0, 100.0, 25))  # [1/s]
 _STEP: Final = 0.01  # [rad or m] small enough to meet no limit on speed or effort
-_WATCHED: Final = 1.5  # [s] after the step
+_LONGEST: Final = 20.0  # [s] after the step
+_SETTLED: Final = 0.005  # of the step, and of the step a second
 P_OVERSHOOT: Final = 0.01
 """Share of a step by which a P servo may overshoot it."""
 
@@ -42,11 +43,13 @@ def overshoot(plant: Plant, gains: Gains, q: Floats, period: float = PRACTICUM_P
     servo = Servo(plant.motors, replace(gains, feed_forward=False), period=period)
     inwards = np.where(plant.motors.upper - q > q - plant.motors.lower, _STEP, -_STEP)
     state, still, farthest = plant.at_rest(q), np.zeros_like(q), -np.inf
-    for _ in range(round(_WATCHED / period)):
+    for _ in range(round(_LONGEST / period)):
         command, _ = servo.command(q + inwards, still, state.q)
         state = plant.advance(state, command, period)
         farthest = max(farthest, float(((state.q - q) / inwards).max()))
-        if not farthest < 2.0:  # unstable
+        unstable = not farthest < 2.0
+        left = np.abs(q + inwards - state.q).max()
+        if unstable or max(left, np.abs(state.velocity).max()) < _SETTLED * _STEP:
             break
     return farthest - 1.0
 

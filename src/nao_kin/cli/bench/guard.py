@@ -176,10 +176,9 @@ def _restless(collisions: CollisionModel, referee: ClearanceReferee, rng: np.ran
     from nao_kin.chain import random_configurations
     from nao_kin.motion.guard import Guard
 
-    start = next(
-        q for q in iter(lambda: random_configurations(collisions.motors, 1, rng)[0], None)
-        if collisions.measure(q).min() > 1.5 * _MARGIN
-    )  # fmt: skip
+    start = random_configurations(collisions.motors, 1, rng)[0]
+    while collisions.measure(start).min() < 1.5 * _MARGIN:
+        start = random_configurations(collisions.motors, 1, rng)[0]
     guarded, way, stopped = Guard(collisions, start), [start], False
     for target in random_configurations(collisions.motors, 4, rng):
         for _ in range(round(0.5 / guarded.period)):
