@@ -32,6 +32,7 @@ EDGES = ("edges", "--targets", "10", "--samples", "5000")
 METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
 CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
+GAIT = ("gait", "--paths", "1", "--duration", "1.5", "--no-speeds")
 GUARD = ("guard", "--motions", "1")
 LOOP = ("loop", "--seconds", "0.4", "--stall", "0.4")
 SERVO = ("servo", "--no-dynamics")
@@ -84,7 +85,7 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS, GUARD, LOOP, SERVO])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -148,7 +149,8 @@ def test_methods_reach_near_targets_and_none_lies() -> None:
     data = data_of(*METHODS)
     # So few targets make percentages coarse; that nobody claims what is not so holds for any number.
     assert missed(data, "near targets", "NAO arm") == []
-    assert {row["method"] for row in data["easy"]} == set(nk.METHODS)
+    iterating = {name for name, method in nk.METHODS.items() if method.kind == "iteration"}
+    assert {row["method"] for row in data["easy"]} == iterating
     able = {row["method"] for row in data["two_hands"]}
     assert able == {name for name, method in nk.METHODS.items() if method.several_tips}
     verdicts = [note for note in data["notes"] if note.startswith(("Thesis", "Practicum"))]
@@ -214,10 +216,24 @@ def test_edges_tells_a_claim_from_an_answer(fakes: None) -> None:
     assert {row["solver"] for row in data["singular"]} == {"nao_kin", "liar", "honest"}
 
 
+def test_pages_are_plain_data() -> None:
+    data = data_of("page", "--rounds", "1")
+    assert [row["robot"] for row in data["rows"]] == ["nao", "jaco2", "phantomx"]
+    assert all(row["ratio"] > 0 and 0.9 < row["mb"] < 5 for row in data["rows"])
+
+
 def test_startup_is_plain_data() -> None:
     data = data_of("startup", "--rounds", "1")
     assert [row["what"] for row in data["rows"]][-1] == "first solve, warm cache"
     assert all(row["ratio"] == pytest.approx(row["ms"] / row["against_ms"]) for row in data["rows"])
+
+
+def test_gait_finds_feet_where_they_stood() -> None:
+    data = data_of(*GAIT)
+    assert missed(data) == []
+    assert len(data["walks"]) == 12
+    assert all(0.0 < row["slip"] < 1e-9 for row in data["walks"])
+    assert {row["give"] for row in data["torsos"]} == {"feet", "yaw"}
 
 
 def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:

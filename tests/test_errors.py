@@ -17,6 +17,8 @@ LEAVES = (
     errors.MissingExtraError("Robot 'ur5'", "robots"),
     errors.UrdfError("a.urdf", 3, "Wrong.", "Right."),
     errors.TableFileError("a.toml", None, "Wrong."),
+    errors.TrajectoryFileError("a.txt", 3, "Wrong.", column=2),
+    errors.KeyframeFileError("a.toml", 3, "Wrong."),
 )
 
 

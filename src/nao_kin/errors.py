@@ -16,10 +16,12 @@ __all__ = [
     "AuditError",
     "FrameError",
     "InvalidInputError",
+    "KeyframeFileError",
     "MissingExtraError",
     "NaoKinError",
     "NoPathError",
     "TableFileError",
+    "TrajectoryFileError",
     "UnknownNameError",
     "UrdfError",
 ]
@@ -160,6 +162,22 @@ class UrdfError(_FileError):
 
 class TableFileError(_FileError):
     """A DH table file was refused; the same attributes as `UrdfError`, without a code."""
+
+
+class TrajectoryFileError(_FileError):
+    """A trajectory file was refused; the same attributes as `UrdfError`, without a code, and the column.
+
+    Attributes:
+        column: Number of the column, 1-based, or None where the whole line or file is meant.
+    """
+
+    def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, column: int | None = None) -> None:
+        super().__init__(path, line, reason if column is None else f"column {column}: {reason}", hint)
+        self.column = column
+
+
+class KeyframeFileError(_FileError):
+    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ SHORT = Budget(iterations=300, restarts=2, patience=100)
 
 
 def handled(kind: str) -> list[str]:
-    return [name for name, method in nk.METHODS.items() if kind in method.targets]
+    return [name for name, method in nk.METHODS.items() if method.kind == "iteration" and kind in method.targets]
 
 
 ALL = [(name, *case) for case in CASES for name in handled(case[2])]

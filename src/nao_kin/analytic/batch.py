@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
+from typing import TYPE_CHECKING, Final, Literal, NoReturn
 
 import numpy as np
 
+from nao_kin.analytic.certifying import ABSENT, SOLVED, Certificate, Written, certify, violations
 from nao_kin.analytic.form import GOALS, ClosedForm
 from nao_kin.analytic.matching import Matched, matched
-from nao_kin.analytic.solutions import SAME, in_window, slack_of
+from nao_kin.analytic.solutions import slack_of
 from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik.aim import goal_violation
-from nao_kin.ik.batch import AUDIT_TOLERANCE, AUDITED, CHUNK, Wanted, inside_limits
+from nao_kin.ik.batch import AUDIT_TOLERANCE, AUDITED, Wanted, inside_limits
 from nao_kin.ik.measure import measure_many
-from nao_kin.ik.problem import Problem, Run, Status, judge
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.se3 import ROTATION_TOLERANCE
+from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -27,12 +27,9 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["BatchSolutions", "solve_all_batch"]
+__all__ = ["BatchSolutions", "certified", "solve_all_batch"]
 
-_STATUSES: Final = tuple(Status)
-_SOLVED, _OUTSIDE = _STATUSES.index(Status.SOLVED), _STATUSES.index(Status.OUTSIDE_LIMITS)
-_ABSENT: Final = -1
-_MEETS: Final = 1e-10  # [m, rad], as one by one
+_BLOCK: Final = 1024  # targets at a time: what lies between the kernels stays in the processor's cache
 
 
 @dataclass(eq=False, slots=True)
@@ -62,17 +59,17 @@ class BatchSolutions:
     @property
     def found(self) -> NDArray[np.bool_]:
         """Whether a place holds a solution, in or out of limits (N, B)."""
-        return np.asarray(self.codes != _ABSENT)
+        return np.asarray(self.codes != ABSENT)
 
     @property
     def solved(self) -> NDArray[np.bool_]:
         """Whether a place holds a solution within tolerance and limits (N, B)."""
-        return np.asarray(self.codes == _SOLVED)
+        return np.asarray(self.codes == SOLVED)
 
     def branch(self, row: int, place: int) -> str:
-        """The branch of a solution in words; empty where there is none."""
+        """The branch of the solution at a row and a place in it, in words; empty where there is none."""
         number, singularity = self.branches[row, place].tolist()
-        return self.form.label(number, singularity) if self.codes[row, place] != _ABSENT else ""
+        return self.form.label(number, singularity) if self.codes[row, place] != ABSENT else ""
 
     def __len__(self) -> int:
         return len(self.q)
@@ -83,6 +80,16 @@ class BatchSolutions:
     def __repr__(self) -> str:
         within = int(self.solved.any(axis=1).sum())
         return f"<BatchSolutions of {len(self)}: {int(self.found.sum())} solutions, {within} targets within limits>"
+
+    def _repr_html_(self) -> str:
+        found, within = self.found.sum(axis=1), np.asarray(self.solved.any(axis=1))
+        rows = tuple(
+            (str(count), str(int((found == count).sum())), str(int((within & (found == count)).sum())))
+            for count in np.unique(found).tolist()
+        )
+        headings = ("solutions of a target", "targets", "of these with one within limits")
+        title = f"{len(self)} targets of {self.chain.name}: {int(found.sum())} solutions"
+        return Table(tuple(Column(heading, number=True) for heading in headings), rows, title=title)._repr_html_()
 
 
 def solve_all_batch(
@@ -108,6 +115,9 @@ def solve_all_batch(
         seed: For the sample.
         audit: ``"sample"`` or ``"all"``.
 
+    Returns:
+        A row of solutions a target, those within limits first.
+
     Raises:
         InvalidInputError: Wrong shapes, not finite, not rigid (the row is named), mixed kinds, or no form fits.
         UnknownNameError: A locked joint is not one of the chain; carries near matches.
@@ -117,91 +127,50 @@ def solve_all_batch(
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
     found = matched(chain, wanted.first, locked)
-    N, B, n = len(wanted.given), found.request.branches, len(chain.joints)
+    N = len(wanted.given)
     if len(found.given) not in (1, N):
         raise InvalidInputError(
             "locked", f"one value a joint, or one for each of the {N} targets", f"{len(found.given)}"
         )
-    result = BatchSolutions(
-        chain,
-        found.form,
-        np.full((N, B, n), np.nan),
-        np.full((N, B), _ABSENT, dtype=np.int8),
-        np.zeros((N, B, 2), dtype=np.int16),
-        np.full((N, B), np.nan),
-        np.full((N, B), np.nan),
-    )
-    for start in range(0, N, CHUNK):
-        chunk = slice(start, min(start + CHUNK, N))
-        _solve(found, wanted, tolerances, chunk, result)
+    certificate = certified(chain, found, wanted, slice(0, N), tolerances, slack_of(tolerances))
+    result = BatchSolutions(chain, found.form, *certificate)
     _audit(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
     return result
 
 
-def _solve(found: Matched, wanted: Wanted, tolerances: Tolerances, chunk: slice, result: BatchSolutions) -> None:
-    """Solves a chunk and writes what the measurement confirms."""
-    form, goals = found.form, wanted.goals(chunk)
-    _check(goals, wanted.first, chunk.start)
-    n, N = form.joints, len(goals)
-    rows, counts = np.empty((N, found.request.branches, n + 2)), np.zeros(N, dtype=np.int64)
-    given = found.given if len(found.given) == 1 else np.ascontiguousarray(found.given[chunk])
-    form.solve_many(found.geometry.parameters, GOALS[found.kind], goals, given, slack_of(tolerances), rows, counts)
-    written = np.arange(rows.shape[1]) < counts[:, None]
-    q = np.tile(found.template, (int(counts.sum()), 1))
-    q[:, list(found.columns)] = rows[written][:, :n]
-    q = in_window(result.chain, q)
-    position, rotation, codes = _measured(result.chain, wanted.first, tolerances, np.repeat(goals, counts, axis=0), q)
-    spread = _Spread(written)
-    codes_of = spread(codes, _ABSENT)
-    errors = spread(np.fmax(np.nan_to_num(position), np.nan_to_num(rotation)), np.inf)
-    joints = spread(q, np.nan)
-    keep = _kept(codes_of, errors, joints)
-    result.codes[chunk] = np.where(keep, codes_of, _ABSENT)
-    result.q[chunk] = np.where(keep[:, :, None], joints, np.nan)
-    result.branches[chunk] = np.where((keep & written)[:, :, None], np.nan_to_num(rows[:, :, n:]), 0).astype(np.int16)
-    result.position_error[chunk] = np.where(keep, spread(position, np.nan), np.nan)
-    result.rotation_error[chunk] = np.where(keep, spread(rotation, np.nan), np.nan)
+def certified(
+    chain: Chain, found: Matched, wanted: Wanted, rows: slice, tolerances: Tolerances, slack: float
+) -> Certificate:
+    """What a closed form finds for some rows of the targets, measured; a slack [m] for branches at the border.
+
+    Raises:
+        InvalidInputError: A row that is no target.
+    """
+    certificate = Certificate.blank(rows.stop - rows.start, found.request.branches, len(chain.joints))
+    counted, kind = wanted.first.counts, KINDS[wanted.first.kind]
+    for start in range(rows.start, rows.stop, _BLOCK):
+        block = slice(start, min(start + _BLOCK, rows.stop))
+        goals = wanted.goals(block)
+        _check(goals, wanted.first, start)
+        written = _written(found, goals, block, slack)
+        part = certificate.part(slice(start - rows.start, block.stop - rows.start))
+        certify(chain.joint_path, found.ranges, kind, counted, goals, written, tolerances, part)
+    return certificate
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Spread:
-    """Puts values of the written places (M, …) back to their places (N, B, …)."""
-
-    written: NDArray[np.bool_]
-
-    def __call__(self, values: NDArray[Any], fill: float) -> NDArray[Any]:
-        spread = np.full((*self.written.shape, *values.shape[1:]), fill, dtype=values.dtype)
-        spread[self.written] = values
-        return spread
-
-
-def _measured(
-    chain: Chain, first: Target, tolerances: Tolerances, goals: Floats, q: Floats
-) -> tuple[Floats, Floats, NDArray[np.int8]]:
-    """Errors and status of solutions (M, n), by the second compiled forward kinematics; −1 where they miss."""
-    from nao_kin.kernels.audit import tips
-
-    position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
-    missed = (position > tolerances.position) | (rotation > tolerances.rotation) | ~np.isfinite(q).all(axis=1)
-    inside = inside_limits(chain, q, tolerances.limits)
-    return position, rotation, np.where(missed, _ABSENT, np.where(inside, _SOLVED, _OUTSIDE)).astype(np.int8)
-
-
-def _kept(codes: NDArray[np.int8], errors: Floats, q: Floats) -> NDArray[np.bool_]:
-    """Which places hold a solution of their own, by the rules of `nao_kin.analytic.solutions.sorted_out`."""
-    keep = codes != _ABSENT
-    best = np.where(keep, errors, np.inf).min(axis=1, keepdims=True, initial=np.inf)
-    keep &= errors <= np.maximum(_MEETS, 1e3 * np.where(np.isfinite(best), best, 0.0))
-    for later in range(1, keep.shape[1]):
-        for earlier in range(later):
-            same = np.abs(q[:, later] - q[:, earlier]).max(axis=1) <= SAME
-            keep[:, later] &= ~(keep[:, earlier] & same)
-    return np.asarray(keep)
+def _written(found: Matched, goals: Floats, block: slice, slack: float) -> Written:
+    """What the closed form writes for a block of goals."""
+    form, N = found.form, len(goals)
+    rows, counts = np.empty((N, found.request.branches, form.joints + 2)), np.zeros(N, dtype=np.int64)
+    given = found.given if len(found.given) == 1 else np.ascontiguousarray(found.given[block])
+    form.solve_many(found.geometry.parameters, GOALS[found.kind], goals, given, slack, rows, counts)
+    return Written(rows, counts, np.array(found.columns), found.template)
 
 
 def _check(goals: Floats, first: Target, offset: int) -> None:
     """Refuses the first row that is no target."""
-    violation = np.array([goal_violation(KINDS[first.kind], goal) for goal in goals])
+    violation = np.empty(len(goals))
+    violations(KINDS[first.kind], goals, violation)
     bad = np.flatnonzero(~(violation <= ROTATION_TOLERANCE))
     if len(bad):
         amount = violation[bad[0]]
@@ -212,20 +181,38 @@ def _check(goals: Floats, first: Target, offset: int) -> None:
 def _audit(
     result: BatchSolutions, wanted: Wanted, tolerances: Tolerances, rng: np.random.Generator, *, everything: bool
 ) -> None:
-    """Measures solutions by the chain itself; one disagreement fails the call."""
-    places = np.argwhere(result.found)
+    """Measures solutions by the chain itself, and judges them in numpy; one disagreement fails the call."""
+    places = np.flatnonzero(result.codes != ABSENT)
     if not everything and len(places):
         places = places[rng.choice(len(places), min(len(places), max(AUDITED, len(places) // 100)), replace=False)]
-    for row, place in places.tolist():
-        target = Target(wanted.first.kind, wanted.goals(slice(row, row + 1))[0], wanted.first.weights)
-        run = Run(result.q[row, place].copy(), _STATUSES[result.codes[row, place]])
-        measured = judge(Problem(result.chain, target, tolerances), run)
-        pairs = (
-            (measured.position_error, result.position_error[row, place], tolerances.position),
-            (measured.rotation_error, result.rotation_error[row, place], tolerances.rotation),
-        )
-        slack = AUDIT_TOLERANCE + 1e-12 * np.abs(target.goal).max()
-        far = any(a is not None and not abs(a - b) <= slack for a, b, _ in pairs)
-        close_call = any(a is not None and abs(a - limit) <= slack for a, _, limit in pairs)
-        if far or (measured.solved != bool(result.solved[row, place]) and not close_call):
-            raise AuditError(row, str(measured), f"position {pairs[0][1]:.3g} m, rotation {pairs[1][1]:.3g} rad")
+    if not len(places):
+        return
+    row, place = np.unravel_index(places, result.codes.shape)
+    q, goals = result.q[row, place], wanted.goals(row)
+    position, rotation = measure_many(KINDS[wanted.first.kind], goals, wanted.first.counts, _tips(result.chain, q))
+    slack = AUDIT_TOLERANCE + 1e-12 * np.abs(goals).max(axis=(1, 2))
+    far = np.zeros(len(row), dtype=np.bool_)
+    reached, close_call = np.ones(len(row), dtype=np.bool_), far.copy()
+    for error, ours, allowed in (
+        (position, result.position_error[row, place], tolerances.position),
+        (rotation, result.rotation_error[row, place], tolerances.rotation),
+    ):
+        far |= (np.isnan(error) != np.isnan(ours)) | (np.abs(error - ours) > slack)
+        reached &= ~(error > allowed)
+        close_call |= np.abs(error - allowed) <= slack
+    solved = reached & inside_limits(result.chain, q, tolerances.limits)
+    bad = np.flatnonzero(far | ((solved != (result.codes[row, place] == SOLVED)) & ~close_call))
+    if len(bad):
+        i = int(bad[0])
+        told = f"position {position[i]:.3g} m, rotation {rotation[i]:.3g} rad, {'' if solved[i] else 'not '}solved"
+        at = int(row[i]), int(place[i])
+        ours_told = f"position {result.position_error[at]:.3g} m, rotation {result.rotation_error[at]:.3g} rad"
+        raise AuditError(at[0], told, ours_told)
+
+
+def _tips(chain: Chain, Q: Floats) -> Floats:
+    """The chain's own poses (N, 4, 4)."""
+    T = np.tile(np.eye(4), (len(Q), 1, 1))
+    for pose, q in zip(T, Q, strict=True):
+        pose[:3, :3], pose[:3, 3] = chain.tip_at(q)
+    return T

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from nao_kin.analytic.certifying import placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.analytic.nao_arm import BASE, LENGTH, OFFSET, SHIFTS, SHOULDER, TIP
-from nao_kin.analytic.solutions import in_window
 from nao_kin.chain import outside_limits
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.target import Target, TargetLike
@@ -114,7 +114,7 @@ def _inside_at(found: Matched, chain: Chain, wanted: Target, yaw: float) -> Iter
     for row in rows[:count]:
         q = found.template.copy()
         q[list(found.columns)] = row[:n]
-        if not outside_limits(chain, in_window(chain, q[None, :])[0]):
+        if not outside_limits(chain, placed(q, found.ranges)):
             yield int(row[n])
 
 

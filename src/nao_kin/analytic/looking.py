@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.analytic import nao_head
+from nao_kin.analytic.certifying import placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
-from nao_kin.analytic.solutions import Solutions, in_window, slack_of, sorted_out
+from nao_kin.analytic.solutions import Solutions, slack_of, sorted_out
 from nao_kin.arrays import Floats, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
@@ -95,7 +96,7 @@ def _looks(
     goal[:3, 3] = point
     count = found.form.solve(numbers, GOALS["position"], goal, np.zeros(1), slack_of(tolerances), rows)
     for row in rows[:count]:
-        q = in_window(chain, row[None, :2])[0]
+        q = placed(row[:2], found.ranges)
         seen = point - chain.pose(q).translation
         problem = Problem(chain, Target.pointing(point, seen, axis, weights=_NO_PLACE), tolerances)
         yield judge(problem, Run(q, Status.SOLVED, branch=found.form.label(int(row[2]), int(row[3]))))

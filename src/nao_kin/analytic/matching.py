@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nao_kin.analytic.certifying import Ranges
 from nao_kin.analytic.form import ClosedForm, Geometry, GoalKind, Mismatch, Request
 from nao_kin.analytic.forms import FORMS
 from nao_kin.errors import InvalidInputError, UnknownNameError
@@ -37,6 +38,7 @@ class Matched:
         columns: The chain's columns that the form's rows give.
         given: Values (1, k) or (N, k) of the joints that the form leaves to the caller [rad].
         template: The chain's joints (n,), held ones at their values [rad or m], the others 0.
+        ranges: The chain's limits.
     """
 
     form: ClosedForm
@@ -45,6 +47,7 @@ class Matched:
     columns: tuple[int, ...]
     given: Floats
     template: Floats
+    ranges: Ranges
 
     @property
     def request(self) -> Request:
@@ -111,7 +114,8 @@ def _match(chain: Chain, kind: GoalKind, values: Mapping[int, Floats]) -> Matche
             if isinstance(geometry, Geometry):
                 template = np.zeros(len(chain.joints))
                 template[list(fixed)] = [float(value) for value in fixed.values()]
-                return Matched(form, geometry, kind, columns, _given([values[c] for c in free]), template)
+                given = _given([values[c] for c in free])
+                return Matched(form, geometry, kind, columns, given, template, Ranges.of(chain))
     raise _refusal(chain, kind, values)
 
 

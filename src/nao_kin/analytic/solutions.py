@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
+from nao_kin.analytic.certifying import MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
-from nao_kin.chain import configuration
+from nao_kin.chain import configuration, value_unit
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.target import Target, TargetLike
@@ -25,12 +26,8 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
 
-__all__ = ["SAME", "Solutions", "in_window", "nearest", "slack_of", "solve_all", "sorted_out"]
+__all__ = ["Solutions", "error_of", "judged", "nearest", "slack_of", "solve_all", "sorted_out"]
 
-SAME: Final = 1e-9
-"""Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
-
-_MEETS: Final = 1e-10  # [m, rad]
 _FEW: Final = 4  # solutions whose joints a terminal has room for with all their digits
 _TURN: Final = 2.0 * math.pi
 _MOST_TURNS: Final = 1000.0  # a range wider than this is a file's way to say that there is no limit
@@ -65,16 +62,21 @@ class Solutions(tuple[IKResult, ...]):
         return "\n  ".join([*lines, *(f"{result.branch or 'the only one'}: {result!r}" for result in self)]) + ">"
 
     def table(self, title: str = "") -> Table:
-        """One column a solution: its joints [rad or m]; below, the status and branch of each."""
-        names = self[0].problem.chain.joint_names if self else ()
-        columns = (Column("joint"), *(Column(f"#{i + 1}", number=True) for i in range(len(self))))
+        """One column a solution, with its joints' values; below, the status and branch of each."""
+        joints = self[0].problem.chain.joints if self else ()
+        names = tuple(joint.name for joint in joints)
+        columns = (
+            Column(f"joint [{value_unit(joints)}]"),
+            *(Column(f"#{i + 1}", number=True) for i in range(len(self))),
+        )
         digits = 6 if len(self) <= _FEW else 4
         rows = tuple((name, *(f"{result.q[k]:.{digits}f}" for result in self)) for k, name in enumerate(names))
         told = [f"#{i + 1} {r.status.name}: {r.branch or 'the only one'}." for i, r in enumerate(self)]
         return Table(columns, rows, title=title, note="\n".join([*told, self.reason]).strip())
 
     def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
+        chain = f" of {self[0].problem.chain.name}" if self else ""
+        return self.table(f"{len(self)} solutions{chain}, {len(self.solved)} within limits")._repr_html_()
 
 
 def solve_all(
@@ -111,9 +113,9 @@ def solve_all(
     found = matched(chain, wanted, locked)
     if len(found.given) != 1:
         raise InvalidInputError("locked", "one number a joint; nao_kin.solve_all_batch takes arrays", "an array")
-    solutions = sorted_out(_judged(found, problem, slack_of(tolerances), windings=windings))
+    solutions = sorted_out(judged(found, problem, slack_of(tolerances), windings=windings))
     if not solutions:
-        solutions.reason = _miss(list(_judged(found, problem, math.inf)))
+        solutions.reason = _miss(list(judged(found, problem, math.inf)))
     return solutions
 
 
@@ -128,7 +130,8 @@ def slack_of(tolerances: Tolerances) -> float:
     return 2.0 * (tolerances.position + tolerances.rotation) + 1e-12
 
 
-def _judged(found: Matched, problem: Problem, slack: float, *, windings: bool = False) -> Iterator[IKResult]:
+def judged(found: Matched, problem: Problem, slack: float, *, windings: bool = False) -> Iterator[IKResult]:
+    """What a closed form writes for a problem, each measured by the judge; a slack [m] for branches at the border."""
     form, n = found.form, found.form.joints
     rows = np.empty((found.request.branches, n + 2))
     goal = np.ascontiguousarray(problem.target.goal)
@@ -137,21 +140,9 @@ def _judged(found: Matched, problem: Problem, slack: float, *, windings: bool = 
         q = found.template.copy()
         q[list(found.columns)] = row[:n]
         label = form.label(int(row[n]), int(row[n + 1]))
-        placed = in_window(problem.chain, q[None, :])[0]
-        for wound in _windings(problem.chain, placed, problem.tolerances.limits) if windings else [placed]:
+        inside = placed(q, found.ranges)
+        for wound in _windings(problem.chain, inside, problem.tolerances.limits) if windings else [inside]:
             yield judge(problem, Run(wound, Status.SOLVED, branch=label))
-
-
-def in_window(chain: Chain, Q: Floats) -> Floats:
-    """Joints (N, n), those outside their limits moved by whole turns to as near to the limits' middle as they go."""
-    moved = Q.copy()
-    for k, joint in enumerate(chain.joints):
-        lower, upper = chain.lower[k], chain.upper[k]
-        if joint.kind != "prismatic" and upper - lower < _MOST_TURNS * _TURN:
-            outside = (Q[:, k] < lower) | (Q[:, k] > upper)
-            turns = np.round((0.5 * (lower + upper) - Q[:, k]) / _TURN)
-            moved[:, k] += np.where(outside, turns * _TURN, 0.0)
-    return moved
 
 
 def _windings(chain: Chain, q: Floats, tolerance: float) -> Iterator[Floats]:
@@ -175,22 +166,23 @@ def _kept(results: Iterable[IKResult]) -> list[IKResult]:
     though it may be within tolerance.
     """
     reached = [result for result in results if result.status in _REACHED]
-    bound = max(_MEETS, 1e3 * min((_error(result) for result in reached), default=0.0))
+    bound = max(MEETS, 1e3 * min((error_of(result) for result in reached), default=0.0))
     good: list[IKResult] = []
     for result in reached:
-        if _error(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
+        if error_of(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
             good.append(result)
     return good
 
 
-def _error(result: IKResult) -> float:
+def error_of(result: IKResult) -> float:
+    """The larger of the errors that the target does not leave free [m, rad]."""
     return max(result.position_error or 0.0, result.rotation_error or 0.0)
 
 
 def _miss(border: Sequence[IKResult]) -> str:
     if not border:
         return "The closed form has no branch for this target."
-    best = min(border, key=_error)
+    best = min(border, key=error_of)
     parts = [] if best.position_error is None else [f"{best.position_error:.3g} m"]
     parts += [] if best.rotation_error is None else [f"{best.rotation_error:.3g} rad"]
     return f"No joints reach the target: the nearest of the closed form's branches misses by {' and '.join(parts)}."
@@ -204,6 +196,9 @@ def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
     Args:
         results: What `solve_all` returned.
         q: Joints to come from (n,) [rad or m].
+
+    Returns:
+        One of the results, as it is.
 
     Raises:
         InvalidInputError: No result at all, or q of a wrong length or not finite.

@@ -12,7 +12,7 @@ import numpy as np
 from nao_kin.arrays import rows
 from nao_kin.errors import AuditError, InvalidInputError
 from nao_kin.ik import layout
-from nao_kin.ik.compiled import solve_goals
+from nao_kin.ik.compiled import ENDED, solve_goals
 from nao_kin.ik.measure import measure_many
 from nao_kin.ik.methods import prepared, start_of
 from nao_kin.ik.problem import Problem, Run, Status, judge
@@ -29,7 +29,18 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.loop import Budget
 
-__all__ = ["AUDITED", "AUDIT_TOLERANCE", "CHUNK", "BatchResult", "Wanted", "inside_limits", "solve_batch"]
+__all__ = [
+    "AUDITED",
+    "AUDIT_TOLERANCE",
+    "CHUNK",
+    "BatchResult",
+    "Wanted",
+    "audit_rows",
+    "inside_limits",
+    "judge_rows",
+    "solve_batch",
+    "starts_of",
+]
 
 CHUNK: Final = 1 << 16
 """Targets worked on at a time: scratch memory does not grow with the batch."""
@@ -63,6 +74,18 @@ class BatchResult:
     position_error: Floats
     rotation_error: Floats
     iterations: NDArray[np.int32]
+
+    @classmethod
+    def blank(cls, chain: Chain, count: int) -> BatchResult:
+        """Room for a count of rows of a chain, not yet written."""
+        return cls(
+            chain,
+            np.empty((count, len(chain.joints))),
+            np.empty(count, dtype=np.int8),
+            np.empty(count),
+            np.empty(count),
+            np.empty(count, dtype=np.int32),
+        )
 
     @property
     def solved(self) -> NDArray[np.bool_]:
@@ -107,43 +130,21 @@ def solve_batch(
     audit: Literal["sample", "all"] = "sample",
     parameters: Mapping[str, float] | None = None,
 ) -> BatchResult:
-    """Solves for many targets on all cores; a row is what `nao_kin.solve` would give, to the last bit.
-
-    The result does not depend on the order of the targets or on the number of threads. Every row is measured again by
-    a second compiled forward kinematics, and a seeded sample (``audit="all"``: every row) by `chain.pose` too.
-
-    Args:
-        chain: The chain.
-        targets: Poses (N, 4, 4), positions (N, 3) [m], or `Target` objects of one kind with the same weights.
-        q0: Start of all rows (n,) or a posture, or one start a row (N, n). By default all zeros, moved inside.
-        method: A name in `nao_kin.METHODS`.
-        tolerances: When a target counts as reached.
-        budget: How long to try for each.
-        seed: For the stored starts and the sample.
-        audit: ``"sample"`` or ``"all"``.
-        parameters: What to tune the method with, see `nao_kin.solve`.
-
-    Raises:
-        InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds.
-        UnknownNameError: No such method, parameter, or joint that the start names; carries near matches.
-        AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
-    """
+    """`nao_kin.solve_batch`, which says what the arguments are, by a method that iterates."""
     wanted = Wanted.of(targets)
     if audit not in ("sample", "all"):
         raise InvalidInputError("audit", "'sample' or 'all'", repr(audit))
     ready = prepared(Problem(chain, wanted.first, tolerances), method, budget, seed, parameters)
-    n, N = len(chain.joints), len(wanted.given)
-    starts = _starts(chain, q0, N, ready.neutral)
-    result = BatchResult(
-        chain, np.empty((N, n)), np.empty(N, np.int8), np.empty(N), np.empty(N), np.empty(N, dtype=np.int32)
-    )
+    N = len(wanted.given)
+    starts = starts_of(chain, q0, N, ready.neutral)
+    result = BatchResult.blank(chain, N)
     for chunk in _chunks(N):
         own = starts[chunk] if len(starts) > 1 else starts
         goals = wanted.goals(chunk)
         outcomes = solve_goals(ready.tables, ready.settings, goals, np.ascontiguousarray(own))
         _refuse(outcomes, chunk.start)
-        _judge(wanted.first, tolerances, goals, outcomes, result, chunk)
-    _audit(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
+        judge_rows(wanted.first, tolerances, goals, outcomes, result, chunk)
+    audit_rows(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
     return result
 
 
@@ -184,8 +185,8 @@ class Wanted:
             return cls(Target("position", np.eye(4)), given)
         raise InvalidInputError("targets", expected, f"shape {given.shape} of type {given.dtype}")
 
-    def goals(self, chunk: slice) -> Floats:
-        """The goals (k, 4, 4) of a chunk, a copy; compiled code checks the numbers."""
+    def goals(self, chunk: slice | NDArray[np.int64]) -> Floats:
+        """The goals (k, 4, 4) of a chunk or of some rows, a copy; compiled code checks the numbers."""
         part = np.array(self.given[chunk], dtype=np.float64, order="C")
         if part.ndim == 3:
             return part
@@ -194,7 +195,8 @@ class Wanted:
         return goals
 
 
-def _starts(chain: Chain, q0: ArrayLike | Mapping[str, float] | None, count: int, neutral: Floats) -> Floats:
+def starts_of(chain: Chain, q0: ArrayLike | Mapping[str, float] | None, count: int, neutral: Floats) -> Floats:
+    """Starts (1, n) or (count, n) from what callers give; the neutral one (n,) by default."""
     if q0 is None:
         return neutral[None, :]
     if not isinstance(q0, Mapping) and np.ndim(q0) == 2:
@@ -228,7 +230,7 @@ def _refuse(outcomes: Floats, offset: int) -> None:
     raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
 
 
-def _judge(
+def judge_rows(
     first: Target, tolerances: Tolerances, goals: Floats, outcomes: Floats, result: BatchResult, chunk: slice
 ) -> None:
     """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
@@ -239,16 +241,13 @@ def _judge(
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
     inside = inside_limits(chain, q, tolerances.limits)
     codes = outcomes[:, layout.CODE].astype(np.int8)
-    ended = np.array([_STATUSES.index(status) for status in _ENDED], dtype=np.int8)[codes]
+    ended = np.array([_STATUSES.index(status) for status in ENDED], dtype=np.int8)[codes]
     ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
     ended[reached & inside] = _STATUSES.index(Status.SOLVED)
     ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
     result.q[chunk], result.codes[chunk] = q, ended
     result.position_error[chunk], result.rotation_error[chunk] = position, rotation
     result.iterations[chunk] = outcomes[:, layout.ITERATIONS]
-
-
-_ENDED = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
 
 
 def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
@@ -263,7 +262,7 @@ def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_
     return np.asarray(inside)
 
 
-def _audit(
+def audit_rows(
     result: BatchResult,
     wanted: Wanted,
     tolerances: Tolerances,

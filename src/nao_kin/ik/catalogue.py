@@ -57,7 +57,8 @@ class Method:
 
     Attributes:
         name: What `solve` takes.
-        code: The number of the update rule, see `nao_kin.ik.rules`, or of the sweep, see `nao_kin.ik.geometric`.
+        code: The number of the update rule, see `nao_kin.ik.rules`, or of the sweep, see `nao_kin.ik.geometric`; −1 for
+            none.
         targets: Kinds of target it handles.
         parameters: What it can be tuned with, in the rule's order.
         reference: Where it comes from.
@@ -65,6 +66,7 @@ class Method:
         orientation_error: Form of the orientation error it sees, see `nao_kin.ik.orientation`.
         weighs: Number of axes, in the order of `nao_kin.ik.target.AXES`, that may have weights other than 1.
         hinges: Whether it works on chains of hinges with a motor each only.
+        kind: ``"iteration"``, or ``"closed form"`` for what is computed at once and needs a fitting chain.
         several_tips: Whether it serves several tips at once, see `nao_kin.solve_tree`.
         budget: How long it tries unless told otherwise; slow methods need more patience.
     """
@@ -78,6 +80,7 @@ class Method:
     orientation_error: int = ROTATION_VECTOR
     weighs: int = 6
     hinges: bool = False
+    kind: Literal["iteration", "closed form"] = "iteration"
     several_tips: bool = True
     budget: Budget = field(default_factory=Budget)
 
@@ -87,7 +90,9 @@ class Method:
         return any(parameter.per for parameter in self.parameters)
 
     def refusal(self, chain: Chain, target: Target) -> InvalidInputError | None:
-        """Why it cannot do a target on a chain, as an error that names the remedy; None if it can."""
+        """Why its iteration cannot do a target on a chain, as an error that names the remedy; None if it can."""
+        if self.kind == "closed form":
+            return InvalidInputError("method", "one that iterates", f"{self.name!r}, which has no steps")
         if target.kind not in self.targets:
             expected = f"a {' or '.join(self.targets)} target, which is all that method {self.name!r} handles"
             return InvalidInputError("target", expected, f"a {target.kind} target")
@@ -276,6 +281,17 @@ _ROWS: Final = (
         weighs=0,
         hinges=True,
         budget=_STEADY,
+    ),
+    Method(
+        name="closed",
+        code=-1,
+        targets=_ALL,
+        parameters=(),
+        reference="the forms of nao_kin.analytic.forms, each with its source",
+        choose_it="chains with a closed form: of all branches within limits the nearest to q0, or a proof of none",
+        kind="closed form",
+        several_tips=False,
+        weighs=0,
     ),
 )
 

@@ -30,12 +30,20 @@ if TYPE_CHECKING:
     from nao_kin.ik.loop import Budget
     from nao_kin.tolerances import Tolerances
 
-__all__ = ["KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
+__all__ = ["ENDED", "KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
 # By the codes of `nao_kin.ik.descent`, which count from 0.
-_ENDED: Final = (Status.SOLVED, Status.STALLED, Status.BUDGET_SPENT, Status.OUT_OF_REACH, Status.NOT_FINITE)
+ENDED: Final = (
+    Status.SOLVED,
+    Status.STALLED,
+    Status.BUDGET_SPENT,
+    Status.OUT_OF_REACH,
+    Status.NOT_FINITE,
+    Status.NO_SOLUTION,
+)
+"""Why a run ended, by the codes of `nao_kin.ik.layout`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -198,7 +206,7 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         raise _refusal(code, told[layout.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
     moved, amount = told[layout.START_MOVED] != 0.0, told[layout.AMOUNT]
-    return Run(outcome[layout.OUTCOME :], _ENDED[code], iterations, starts, moved, amount, "", iterates)
+    return Run(outcome[layout.OUTCOME :], ENDED[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:

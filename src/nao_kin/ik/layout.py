@@ -13,7 +13,7 @@ POSITION_ERROR, ROTATION_ERROR, CODE, ITERATIONS, STARTS, START_MOVED, AMOUNT, M
 
 # Codes. The amount is by how much the target misses the reach [m], by how much the goal is none (see `goal_violation`),
 # or which joint of the start is not finite.
-SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE = range(5)
+SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE, NO_SOLUTION = range(6)
 BAD_GOAL, BAD_START = -1, -2
 
 # Entries of the settings (SETTINGS,): kind of target, update rule, the budget's four, whether the first start is the

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.kernels.compiling import jit
+from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 __all__ = ["errors", "measure", "measure_many"]
 
 _POSE, _POSITION, _POINTING, _ORIENTATION = 0, 1, 2, 3
+_SMALL = 1e-6  # twice a sine
+_LEAST = 1e-280  # [m²]: a sum of squares below has lost digits
 
 
-@jit
+@leaf_jit
 def measure(
     kind: int,
     goal: Floats,
@@ -58,13 +60,10 @@ def measure(
     return position, rotation, True
 
 
-@jit
+@leaf_jit
 def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[float, float]:
     """Position error [m] and rotation error [rad] over the axes that count; see `measure`."""
-    position = math.nan if kind == _ORIENTATION else 0.0
-    for i in range(3):
-        if counts >> i & 1:  # hypot, because the square of a far target would overflow
-            position = math.hypot(position, goal[i, 3] - p[i])
+    position = math.nan if kind == _ORIENTATION else _distance(goal, counts, p)
     if kind == _POSITION:
         return position, math.nan
     if kind == _POINTING:
@@ -81,7 +80,8 @@ def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[
         twice = _twice_sine(goal, R, i)
         squared += twice * twice
     sine = math.sqrt(squared)
-    angle = math.atan2(sine, trace)
+    # A small angle is its sine, to thirteen digits.
+    angle = 0.5 * sine if sine < _SMALL and trace > 0.0 else math.atan2(sine, trace)
     if counts >> 3 == 7:
         return position, angle
     counted = 0.0
@@ -91,21 +91,37 @@ def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[
     return position, angle * math.sqrt(counted)
 
 
-@jit
+@leaf_jit
+def _distance(goal: Floats, counts: int, p: Floats) -> float:
+    """Distance over the axes that count [m]."""
+    squared = 0.0
+    for i in range(3):
+        if counts >> i & 1:
+            squared += (goal[i, 3] - p[i]) ** 2
+    if _LEAST < squared < math.inf or squared == 0.0:
+        return math.sqrt(squared)
+    distance = 0.0
+    for i in range(3):  # hypot, because squares of what is far or near overflow or vanish
+        if counts >> i & 1:
+            distance = math.hypot(distance, goal[i, 3] - p[i])
+    return distance
+
+
+@leaf_jit
 def _turn(goal: Floats, R: Floats, i: int, j: int) -> float:
     """Entry of R_goal Rᵀ, the turn in base axes that is missing."""
     entry: float = goal[i, 0] * R[j, 0] + goal[i, 1] * R[j, 1] + goal[i, 2] * R[j, 2]
     return entry
 
 
-@jit
+@leaf_jit
 def _twice_sine(goal: Floats, R: Floats, i: int) -> float:
     """Entry i of the missing turn's axis times twice the sine of its angle: the skew part of R_goal Rᵀ."""
     j, k = (i + 1) % 3, (i + 2) % 3
     return _turn(goal, R, k, j) - _turn(goal, R, j, k)
 
 
-@jit
+@leaf_jit
 def _axis_squared(goal: Floats, R: Floats, i: int, sine: float, trace: float) -> float:
     """Squared entry i of the missing turn's axis; `sine` and `trace` are twice its angle's sine and cosine."""
     if trace > 0.0:
@@ -115,7 +131,7 @@ def _axis_squared(goal: Floats, R: Floats, i: int, sine: float, trace: float) ->
     return max(0.0, (_turn(goal, R, i, i) - cosine) / (1.0 - cosine))
 
 
-@jit
+@leaf_jit
 def _now(R: Floats, goal: Floats, i: int) -> float:
     """Entry i of the pointing axis as it is now, in base axes."""
     entry: float = R[i, 0] * goal[0, 0] + R[i, 1] * goal[1, 0] + R[i, 2] * goal[2, 0]

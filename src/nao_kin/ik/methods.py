@@ -103,32 +103,7 @@ def solve(
     parameters: Mapping[str, float] | None = None,
     jump: float | None = None,
 ) -> IKResult | TreeResult:
-    """Joints that bring the tip to a target, measured again before they are returned.
-
-    Args:
-        chain: The chain; or a tree, with targets by tip name, which is `nao_kin.solve_tree` with its usual options.
-        target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m] with free orientation, or a `Target`.
-        q0: Start, a vector (n,) or a posture of the whole robot (joints not named at 0). Outside the limits it is moved
-            inside and the result says so. By default all zeros, moved inside.
-        method: A name in `METHODS`.
-        tolerances: When the target counts as reached.
-        budget: How long to try.
-        seed: For the stored starts; the same call gives the same result.
-        engine: ``"compiled"``, or ``"reference"`` for the same iteration in Python on the chain's own forward
-            kinematics and frame Jacobian.
-        trace: Keep every iterate in the result.
-        parameters: What to tune the method with, by the names in its row of `METHODS`; the others keep their defaults.
-        jump: Largest move of a joint from the start to the solution [rad or m]; one that needs more is
-            `Status.JUMPED`. No limit unless given.
-
-    Returns:
-        A result whether solved or not: ask ``result.solved`` and read ``result.status``.
-
-    Raises:
-        InvalidInputError: Wrong shape, not finite, a rotation part that is none, or a target the method cannot do.
-        UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
-            matches.
-    """
+    """`nao_kin.solve`, which says what the arguments are, by a method that iterates."""
     if isinstance(chain, Tree):
         options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
         _refuse_for_trees(engine, jump)

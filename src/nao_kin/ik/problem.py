@@ -36,6 +36,7 @@ class Status(enum.Enum):
     OUTSIDE_LIMITS = "The tip is at the target, but a joint is outside its range."
     JUMPED = "The target is reached, but from the start a joint has to move by more than allowed."
     NOT_FINITE = "The iteration left the finite numbers; the last finite joints are returned."
+    NO_SOLUTION = "No branch of the closed form reaches the target, whatever the joints' ranges."
 
 
 # The judge runs after every solve; looking a member up in its class takes as long as a joint's arithmetic.

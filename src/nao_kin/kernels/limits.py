@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import LimitRule
 
-__all__ = ["column_range", "decides", "hold", "move_inside", "packed_rules"]
+__all__ = ["column_range", "decides", "hold", "inside_ranges", "move_inside", "packed_rules"]
 
 
 def packed_rules(rules: Sequence[LimitRule], joint_names: Sequence[str]) -> Floats:
@@ -69,6 +69,23 @@ def column_range(limits: Floats, coupled: Floats, q: Floats, i: int) -> tuple[fl
             lower, upper = max(lower, least), min(upper, greatest)
         first = end
     return min(lower, upper), upper
+
+
+@leaf_jit
+def inside_ranges(limits: Floats, coupled: Floats, q: Floats, tolerance: float) -> bool:
+    """Whether every joint of q (n,) is within its own and its coupled range, give or take the tolerance."""
+    outside = 0
+    for i in range(q.shape[0]):
+        outside += not limits[0, i] - tolerance <= q[i] <= limits[1, i] + tolerance
+    first = 0
+    while first < coupled.shape[0]:
+        end = first + 1
+        while end < coupled.shape[0] and coupled[end, 0] == coupled[first, 0]:
+            end += 1
+        least, greatest = _coupled_range(coupled, first, end, q[int(coupled[first, 2])])
+        outside += not least - tolerance <= q[int(coupled[first, 1])] <= greatest + tolerance
+        first = end
+    return outside == 0
 
 
 @leaf_jit
