@@ -33,6 +33,9 @@ METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
 CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
 GAIT = ("gait", "--paths", "1", "--duration", "1.5", "--no-speeds")
+GUARD = ("guard", "--motions", "1")
+LOOP = ("loop", "--seconds", "0.4", "--stall", "0.4")
+SERVO = ("servo", "--no-dynamics")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -82,12 +85,34 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS, GAIT])
+@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO])
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
     assert "should be" in text
     assert "numpy" in text
+
+
+def test_the_guard_stops_what_collides_and_nothing_else() -> None:
+    data = data_of(*GUARD)
+    assert missed(data) == []
+    assert {(row["robot"], row["kind"]) for row in data["rows"]} >= {("nao", "colliding"), ("jaco2", "clear")}
+    assert all(row["path"] < 0.0 for row in data["rows"] if row["kind"] == "colliding")
+    assert all(row["path"] >= 10.0 for row in data["rows"] if row["kind"] == "clear")
+
+
+def test_the_loop_counts_deadlines_and_comes_to_rest() -> None:
+    data = data_of(*LOOP)
+    assert missed(data, "in time") == []
+    commanding, silent = data["rows"]
+    assert commanding["met"] + commanding["missed"] == commanding["cycles"]
+    assert (silent["met"], silent["missed"]) == (0, silent["cycles"])
+
+
+def test_feed_forward_is_worth_what_is_promised() -> None:
+    data = data_of(*SERVO)
+    assert missed(data) == []
+    assert all(row["cut"] == 0 for row in data["rows"])
 
 
 def test_fk_compares_every_bundled_robot_with_pinocchio() -> None:
