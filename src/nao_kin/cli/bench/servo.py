@@ -11,16 +11,14 @@ from nao_kin.cli.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, 
 from nao_kin.cli.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
-    from nao_kin.arrays import Floats
     from nao_kin.motion.plants import Plant
-    from nao_kin.motors import Motors
     from nao_kin.trajectory import Trajectory
 
 __all__ = ["servo"]
 
 _START: Final = (0.3, 3.0, 2.0, 0.5, -0.5, 0.2)  # [rad]
 _WAY: Final = (1.0, 0.6, -0.8, 1.2, 0.9, -1.0)  # [rad]
-_DURATION, _ACCELERATING = 3.2, 0.4  # [s]
+_ACCELERATION: Final = 1.0  # [rad/s²]
 _PERIOD: Final = 0.01  # [s]
 _ENOUGH: Final = 5.0
 _INTEGRAL_TIMES: Final = (0.2, 0.5, 1.0)  # [s]
@@ -36,9 +34,11 @@ def servo(
     from nao_kin.motion.plants import RigidBodies, VelocityServos
     from nao_kin.motors import Motors
     from nao_kin.robot import load
+    from nao_kin.trajectory.joint_motion import joint_motion
 
     machine, motors = Machine(), Motors.of(load("jaco2"))
-    reference = _reference(motors)
+    start, way = np.array(_START), np.array(_WAY)
+    reference = joint_motion(motors, start, start + way, acceleration=_ACCELERATION, straight=True, sampling=_PERIOD)
     cases: list[tuple[str, Plant, bool]] = [
         ("first order, P", VelocityServos(motors), False),
         ("first order, PI", VelocityServos(motors), True),
@@ -70,23 +70,6 @@ _NOTES = (
     "answer to a small step overshoots by at most 1 % (P) or 10 % (PI). Rigid bodies: forward dynamics with gravity, "
     "effort limits and drives that know gravity.",
 )
-
-
-def _reference(motors: Motors) -> Trajectory:
-    """A straight joint motion at a trapezoid of speed, the same for all joints in shares of the way."""
-    from nao_kin.trajectory import Trajectory
-
-    times = np.linspace(0.0, _DURATION, round(_DURATION / _PERIOD) + 1)
-    start, way = np.array(_START), np.array(_WAY)
-    return Trajectory(motors.joints, times, start + _share(times)[:, None] * way, "there")
-
-
-def _share(times: Floats) -> Floats:
-    """Share of the way at each instant: constant acceleration, cruise, the same braking."""
-    left = np.minimum(times, _DURATION - times)
-    cruise = 1.0 / (_DURATION - _ACCELERATING)
-    ramp = np.where(left < _ACCELERATING, 0.5 * cruise * left**2 / _ACCELERATING, cruise * (left - 0.5 * _ACCELERATING))
-    return np.where(times <= 0.5 * _DURATION, ramp, 1.0 - ramp)
 
 
 def _row(case: str, plant: Plant, reference: Trajectory, integral: bool) -> dict[str, Any]:
