@@ -34,6 +34,10 @@ METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
 TRAJECTORY = ("trajectory", "--cases", "200", "--targets", "10")
 CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
+GAIT = ("gait", "--paths", "1", "--duration", "1.5", "--no-speeds")
+GUARD = ("guard", "--motions", "1")
+LOOP = ("loop", "--seconds", "0.4", "--stall", "0.4")
+SERVO = ("servo", "--no-dynamics")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -83,12 +87,36 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TRAJECTORY, CLOSED, TIPS])
+@pytest.mark.parametrize(
+    "arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TRAJECTORY, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO]
+)
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
     assert "should be" in text
     assert "numpy" in text
+
+
+def test_the_guard_stops_what_collides_and_nothing_else() -> None:
+    data = data_of(*GUARD)
+    assert missed(data) == []
+    assert {(row["robot"], row["kind"]) for row in data["rows"]} >= {("nao", "colliding"), ("jaco2", "clear")}
+    assert all(row["path"] < 0.0 for row in data["rows"] if row["kind"] == "colliding")
+    assert all(row["path"] >= 10.0 for row in data["rows"] if row["kind"] == "clear")
+
+
+def test_the_loop_counts_deadlines_and_comes_to_rest() -> None:
+    data = data_of(*LOOP)
+    assert missed(data, "in time") == []
+    commanding, silent = data["rows"]
+    assert commanding["met"] + commanding["missed"] == commanding["cycles"]
+    assert (silent["met"], silent["missed"]) == (0, silent["cycles"])
+
+
+def test_feed_forward_is_worth_what_is_promised() -> None:
+    data = data_of(*SERVO)
+    assert missed(data) == []
+    assert all(row["cut"] == 0 for row in data["rows"])
 
 
 def test_fk_compares_every_bundled_robot_with_pinocchio() -> None:
@@ -201,10 +229,24 @@ def test_edges_tells_a_claim_from_an_answer(fakes: None) -> None:
     assert {row["solver"] for row in data["singular"]} == {"nao_kin", "liar", "honest"}
 
 
+def test_pages_are_plain_data() -> None:
+    data = data_of("page", "--rounds", "1")
+    assert [row["robot"] for row in data["rows"]] == ["nao", "jaco2", "phantomx"]
+    assert all(row["ratio"] > 0 and 0.9 < row["mb"] < 5 for row in data["rows"])
+
+
 def test_startup_is_plain_data() -> None:
     data = data_of("startup", "--rounds", "1")
     assert [row["what"] for row in data["rows"]][-1] == "first solve, warm cache"
     assert all(row["ratio"] == pytest.approx(row["ms"] / row["against_ms"]) for row in data["rows"])
+
+
+def test_gait_finds_feet_where_they_stood() -> None:
+    data = data_of(*GAIT)
+    assert missed(data) == []
+    assert len(data["walks"]) == 12
+    assert all(0.0 < row["slip"] < 1e-9 for row in data["walks"])
+    assert {row["give"] for row in data["torsos"]} == {"feet", "yaw"}
 
 
 def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:

@@ -90,6 +90,20 @@ def test_the_documented_comparisons_run(tmp_path: Path) -> None:
         assert line in printed.splitlines()
 
 
+def test_the_documented_guard_stops_where_it_says(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "motion.md").read_text(encoding="utf-8")
+    (block,), (shown,) = blocks(page, "python"), blocks(page, "text")
+    done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout == shown, done.stderr
+
+
+def test_the_documented_peer_compiles() -> None:
+    (block,) = blocks((ROOT / "docs" / "streaming.md").read_text(encoding="utf-8"), "python")
+    names: dict[str, object] = {}
+    exec(block, names)  # noqa: S102 - our own page
+    assert callable(names["nod"])
+
+
 def test_the_version_is_said_once() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["version"] == nk.__version__

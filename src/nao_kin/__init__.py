@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.checks.checker import check as check
     from nao_kin.checks.finding import Finding as Finding
     from nao_kin.checks.finding import Report as Report
+    from nao_kin.collision.model import CollisionModel as CollisionModel
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
@@ -76,6 +77,7 @@ _HOME = {
     "Cause": "trajectory.causes",
     "Chain": "chain",
     "ChainJoint": "chain",
+    "CollisionModel": "collision.model",
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",

@@ -156,6 +156,9 @@ def solve_batch(
         audit: ``"sample"`` or ``"all"``.
         parameters: What to tune the method with, see `nao_kin.solve`.
 
+    Returns:
+        A row a target, in their order; rows that are not solved hold the nearest joints found.
+
     Raises:
         InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds, or
             what the method cannot do.

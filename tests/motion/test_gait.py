@@ -258,11 +258,13 @@ def test_out_of_balance_and_too_fast_are_refused() -> None:
 
 
 def test_the_fastest_walk_is_walkable_and_a_little_faster_is_not() -> None:
-    way = WalkCommand(velocity=(0.3, 0.0), duration=3.0)
+    way = WalkCommand(velocity=(0.3, 0.0), duration=1.5, sample_time=0.02)
     found = fastest(robot("phantomx"), way)
     assert found.walkable
     assert 0.05 < found.command.velocity[0] < 0.3
     assert not walk(robot("phantomx"), found.command.at_speed(1.011)).walkable
+    hundred = fastest(robot("phantomx"), replace(way, velocity=(100.0, 0.0)))
+    assert hundred.command.velocity[0] == pytest.approx(found.command.velocity[0], rel=0.021)
     stuck = fastest(robot("phantomx"), replace(way, body=(0.0, 0.0, 0.2, 0.0, 0.0, 0.0)))
     assert not stuck.walkable
     assert stuck.command.velocity == (0.0, 0.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from nao_kin.errors import KeyframeFileError, UnknownNameError
+from nao_kin.errors import InvalidInputError, KeyframeFileError, UnknownNameError
 from nao_kin.motion.keyframe_file import EXAMPLE, Keyframe, Keyframes, parse_keyframes, read_keyframes
 from nao_kin.motion.keyframes import Played, play
 from tests.conftest import robot
@@ -180,6 +180,25 @@ def test_a_follower_moves_its_leader_and_the_start_is_held_until_named() -> None
     assert values == pytest.approx(np.array([[0.0, 0.2], [-0.3, 0.2], [0.0, 0.5]]))
     with pytest.raises(UnknownNameError, match="HeadYaw"):
         play(Keyframes(robot("nao"), "", postures, keys), {"HeadYow": 0.2})
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"keys": ()}, "keyframes"),
+        ({"keys": (Keyframe(1.0, "a"), Keyframe(1.0, "a"))}, "keyframes"),
+        ({"keys": (Keyframe(-1.0, "a"),)}, "keyframes"),
+        ({"keys": (Keyframe(math.nan, "a"),)}, "times"),
+        ({"keys": (Keyframe(0.0, "aa"),)}, "no posture"),
+        ({"between": "linear"}, "between"),
+        ({"too_fast": "never"}, "too_fast"),
+        ({"sample_time": 0.0}, "sample_time"),
+    ],
+)
+def test_keyframes_made_by_hand_are_checked_too(fields: dict[str, object], said: str) -> None:
+    good = {"robot": robot("nao"), "name": "", "postures": {"a": {"HeadYaw": 0.1}}, "keys": (Keyframe(0.0, "a"),)}
+    with pytest.raises((InvalidInputError, UnknownNameError), match=said):
+        Keyframes(**{**good, **fields})  # type: ignore[arg-type]
 
 
 def test_one_keyframe_is_a_motion_too() -> None:

@@ -22,6 +22,7 @@ import numpy as np
 from nao_kin.analytic import six_r_kernel as layout
 from nao_kin.analytic.form import Geometry, Mismatch, Screws, screws
 from nao_kin.analytic.ranges import middles_and_halves
+from nao_kin.kernels.motion import packed_joints
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -189,7 +190,8 @@ def _packed(
     numbers[layout.RESIDUAL] = residual
     numbers[layout.SCALE] = max(sum(lengths), float(np.abs(points - points[0]).max()))
     numbers[layout.SENSES : layout.FOREARM] = sense
-    numbers[layout.FOREARM : layout.SIZE] = _forearm(axes, plane @ axes[3], links[1])
+    numbers[layout.JOINTS : layout.SIZE] = packed_joints(path).ravel()
+    numbers[layout.FOREARM : layout.JOINTS] = _forearm(axes, plane @ axes[3], links[1])
     return Geometry(numbers, residual)
 
 

@@ -24,6 +24,7 @@ from nao_kin.analytic.six_r_kernel import (
     CERTIFIED,
     LOWER,
     RESIDUAL,
+    ROUGH,
     SCALE,
     SENSES,
     UPPER,
@@ -31,6 +32,7 @@ from nao_kin.analytic.six_r_kernel import (
     goal_of,
     moved,
     point,
+    refined,
     settle,
     store,
     turn_between,
@@ -50,13 +52,13 @@ if TYPE_CHECKING:
     Loop: TypeAlias = tuple[float, float, float]
     Two: TypeAlias = tuple[float, float]
 
-__all__ = ["BRANCHES", "solve", "solve_many"]
+__all__ = ["BRANCHES", "SAMPLES", "solve", "solve_densely", "solve_many"]
 
 BRANCHES: Final = 16
-_SAMPLES: Final = 256  # a loop
-_PARTS: Final = 16  # of the space between two samples where roots crowd
+SAMPLES: Final = 256  # a loop
+_PARTS: Final = 256  # of the space between two samples where roots crowd, a power of 4
 _SAME: Final = 1e-6  # two solutions whose joints are all this near are one [rad]
-_DIP: Final = 1e-8  # relative: a dip that ends farther from zero is none, unless the arm's own numbers may fill it:
+_DIP: Final = 1e-6  # relative: a dip that ends farther from zero is none, unless the arm's own numbers may fill it:
 _DEEPER: Final = 100.0  # per relative departure of those numbers
 _BISECTIONS: Final = 60
 _SECTIONS: Final = 45
@@ -77,10 +79,17 @@ def solve_many(
 @jit
 def solve(arm: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:  # noqa: ARG001
     """Every solution of a pose; see `nao_kin.analytic.form.ClosedForm` for the arguments."""
-    count = _solve(arm, goal, rows, _SAMPLES)
+    count = _solve(arm, goal, rows, SAMPLES)
     if count % 2:  # generic counts are even: a pair was missed, or two are one
-        count = _solve(arm, goal, rows, 8 * _SAMPLES)
-    return count
+        count = _solve(arm, goal, rows, 8 * SAMPLES)
+    return refined(arm, goal, rows, count)
+
+
+@parallel_jit
+def solve_densely(arm: Floats, samples: int, goals: Floats, rows: Floats, counts: NDArray[np.int64]) -> None:
+    """`solve_many` with more samples a loop than it takes by itself, to see whether it misses any solution."""
+    for i in prange(goals.shape[0]):
+        counts[i] = refined(arm, goals[i], rows[i], _solve(arm, goals[i], rows[i], samples))
 
 
 @jit
@@ -124,14 +133,39 @@ def _search(arm: Floats, G: Placed, L: Floats, loop: Loop, N: int, rows: Floats,
     V[N, 0], V[N, 1] = V[0, 0], V[0, 1]
     for i in range(N):
         left, start, end = width * (i + 0.5), (V[i, 0], V[i, 1]), (V[i + 1, 0], V[i + 1, 1])
-        if not _crowded(start, end, width):
+        if _crowded(start, end, width):
+            count = _walk(arm, G, L, loop, left, width, start, end, size, rows, count, W)
+        else:
             count = _between(arm, G, L, loop, left, width, start, end, size, rows, count, W)
+    return count
+
+
+@leaf_jit
+def _walk(
+    arm: Floats,
+    G: Placed,
+    L: Floats,
+    loop: Loop,
+    left: float,
+    width: float,
+    start: Two,
+    end: Two,
+    size: float,
+    rows: Floats,
+    count: int,
+    W: Floats,
+) -> int:
+    """Writes the solutions between two samples where roots may crowd, in steps as short as they need to be."""
+    unit, at, step = width / _PARTS, 0, _PARTS // 4
+    while at < _PARTS:
+        there = _both(arm, L, loop, left + unit * (at + step)) if at + step < _PARTS else end
+        if step > 1 and _crowded(start, there, unit * step):
+            step //= 4
             continue
-        for j in range(_PARTS):
-            middle = _both(arm, L, loop, left + width / _PARTS * (j + 1)) if j + 1 < _PARTS else end
-            part = left + width / _PARTS * j
-            count = _between(arm, G, L, loop, part, width / _PARTS, start, middle, size, rows, count, W)
-            start = middle
+        count = _between(arm, G, L, loop, left + unit * at, unit * step, start, there, size, rows, count, W)
+        at, start = at + step, there
+        while step < _PARTS // 4 and at % (4 * step) == 0:
+            step *= 4
     return count
 
 
@@ -140,9 +174,13 @@ def _crowded(start: Two, end: Two, width: float) -> bool:
     """Whether there may be more roots between two samples than their signs and slopes tell.
 
     Of different signs, three: a cubic with three has a mean slope of at most 2/3 of the mean of its slopes at the ends.
-    Of the same sign, two: one of the tangents meets zero between the samples.
+    Of the same sign, two: one of the tangents meets zero between the samples. And near zero anything may be where the
+    slope changes by half, as it does where two shoulders nearly become one.
     """
     (f, slope), (g, end_slope) = start, end
+    steepest = max(abs(slope), abs(end_slope))
+    if abs(end_slope - slope) > 0.5 * steepest and min(abs(f), abs(g)) < width * steepest:
+        return True
     if (f < 0.0) != (g < 0.0):
         return abs(g - f) < 0.4 * width * abs(slope + end_slope)
     return abs(f) < width * (slope if f < 0.0 else -slope) or abs(g) < width * (-end_slope if g < 0.0 else end_slope)
@@ -287,4 +325,4 @@ def _settled(
         return count
     label = (0 if math.sin(q[2] + arm[LOWER + 1] - arm[UPPER + 1]) >= 0.0 else 1) + (0 if math.sin(q[4]) >= 0.0 else 2)
     side = loop[2] if loop[1] < 0.0 else math.sin(phi)
-    return store(arm, rows, count, (q[0], q[1], q[2], q[3], q[4], q[5]), label + (0 if side >= 0.0 else 4), 0)
+    return store(arm, rows, count, (q[0], q[1], q[2], q[3], q[4], q[5]), label + (0 if side >= 0.0 else 4), ROUGH)

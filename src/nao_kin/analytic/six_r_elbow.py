@@ -33,6 +33,7 @@ from nao_kin.analytic.six_r_kernel import (
     off_axis,
     plus,
     point,
+    refined,
     roots,
     settled_rows,
     shoulder,
@@ -81,13 +82,13 @@ def solve_spherical_many(
 @jit
 def solve_parallel(arm: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:  # noqa: ARG001
     """Every solution of an arm with three parallel axes; see `nao_kin.analytic.form.ClosedForm` for the arguments."""
-    return _solve(arm, goal, slack, rows, True)
+    return refined(arm, goal, rows, _solve(arm, goal, slack, rows, True))
 
 
 @jit
 def solve_spherical(arm: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:  # noqa: ARG001
     """Every solution of an arm with a spherical wrist; see `nao_kin.analytic.form.ClosedForm` for the arguments."""
-    return _solve(arm, goal, slack, rows, False)
+    return refined(arm, goal, rows, _solve(arm, goal, slack, rows, False))
 
 
 @jit

@@ -25,9 +25,10 @@ import numpy as np
 from nao_kin.analytic import six_r_kernel as layout
 from nao_kin.analytic.form import Geometry, Mismatch, Screws, screws
 from nao_kin.analytic.ranges import middles_and_halves
-from nao_kin.analytic.six_r_kernel import CERTIFIED, goal_of, reach, settle, wandered
+from nao_kin.analytic.six_r_kernel import CERTIFIED, goal_of, reach, refined, settle, wandered
 from nao_kin.analytic.triangle import FAR
 from nao_kin.arrays import Floats
+from nao_kin.kernels.motion import packed_joints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,6 +71,7 @@ def recognise(path: JointPath) -> Geometry | Mismatch:
     numbers[layout.MIDDLES : layout.UPPER], _ = middles_and_halves(path.lower, path.upper)
     size = float(np.linalg.norm(np.diff(arm.points, axis=0), axis=1).sum())
     numbers[layout.SCALE], numbers[layout.SENSES : layout.FOREARM] = max(size, 1e-3), 1.0
+    numbers[layout.JOINTS : layout.SIZE] = packed_joints(path).ravel()
     return Geometry(numbers, 0.0)
 
 
@@ -99,8 +101,8 @@ def solve(arm: Floats, kind: int, goal: Floats, given: Floats, slack: float, row
     isolated.sort(key=lambda q: float(q[0]))
     kept = (isolated + continuum)[:BRANCHES]
     for i, q in enumerate(kept):
-        rows[i, :6], rows[i, 6], rows[i, 7] = q, i, float(i >= len(isolated))
-    return len(kept)
+        rows[i, :6], rows[i, 6], rows[i, 7] = q, i, float(i >= len(isolated)) + layout.ROUGH
+    return refined(arm, np.ascontiguousarray(goal), rows, len(kept))
 
 
 def _told_apart(arm: Floats, found: list[Floats]) -> tuple[list[Floats], list[Floats]]:

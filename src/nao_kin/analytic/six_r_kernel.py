@@ -20,6 +20,7 @@ import numpy as np
 
 from nao_kin.analytic.triangle import NONE, ROUNDING, TWO, bend
 from nao_kin.kernels.compiling import jit, leaf_jit
+from nao_kin.kernels.extended import refine
 from nao_kin.kernels.linear import add_to_diagonal, solve_positive, times_own_transpose, transpose_times
 from nao_kin.kernels.rotation import (
     Nine,
@@ -42,14 +43,28 @@ if TYPE_CHECKING:
     Placed: TypeAlias = tuple[Nine, Three]
     Roots: TypeAlias = tuple[int, float, float, float, float]
 
-__all__ = ["SIZE", "axis", "goal_of", "in_plane", "point", "roots", "settle", "shoulder", "store", "turn_between"]
+__all__ = [
+    "SIZE",
+    "axis",
+    "goal_of",
+    "in_plane",
+    "point",
+    "refined",
+    "roots",
+    "settle",
+    "shoulder",
+    "store",
+    "turn_between",
+]
 
 # Where an arm's numbers stand; see `nao_kin.analytic.six_r.packed`. Joints are in the order in which it is solved.
 BACKWARDS, TIP, AXES, POINTS, OWN_AXES, OWN_POINTS = 0, 1, 13, 31, 49, 67
 ACROSS, ALONG, MIDDLES, UPPER, LOWER, LAST, SIDE, RESIDUAL, SCALE = 85, 88, 91, 97, 99, 101, 103, 104, 105
-SENSES, FOREARM, SIZE = 106, 112, 116  # a joint turns by its sense times q
+SENSES, FOREARM = 106, 112  # a joint turns by its sense times q
+JOINTS, SIZE = 116, 228  # the chain itself (7, 16), see `nao_kin.kernels.motion`
 
 ONE_SHOULDER, ANY_SHOULDER, ANY_WRIST, ONE_ELBOW, ANY_ELBOW, ONE_WRIST = 1, 2, 4, 8, 16, 32  # bits of the singularity
+ROUGH: Final = 64  # the bit of a row whose last digits are still to be found, until `refined`
 
 _STEPS: Final = 12
 _WANDERINGS: Final = 60
@@ -291,8 +306,26 @@ def settled_rows(arm: Floats, G: Placed, rows: Floats, count: int, first: int, c
         miss = settle(arm, G, q, W)
         if miss < CERTIFIED or arm[RESIDUAL] < CERTIFIED:
             angles = (q[0], q[1], q[2], q[3], q[4], q[5])
-            kept = store(arm, rows, kept, angles, rows[row, 6], rows[row, 7])
+            kept = store(arm, rows, kept, angles, rows[row, 6], rows[row, 7] + ROUGH)
     return kept
+
+
+@jit
+def refined(arm: Floats, goal: Floats, rows: Floats, count: int) -> int:
+    """Finds the last digits of the rows that lack them, for a goal (4, 4); the number of rows, as before."""
+    rough = 0
+    for row in range(count):
+        rough += rows[row, 7] >= ROUGH
+    if rough == 0:
+        return count
+    joints, W, X = arm[JOINTS:SIZE].reshape(7, 16), np.empty((4, 6, 6)), np.empty((3, 4, 2))
+    for row in range(count):
+        if rows[row, 7] >= ROUGH:
+            rows[row, 7] -= ROUGH
+            refine(joints, goal, rows[row, :6], W, X)
+            for k in range(6):
+                rows[row, k] = wrapped(rows[row, k])
+    return count
 
 
 @leaf_jit

@@ -33,14 +33,15 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
 
     Loop: TypeAlias = tuple[float, float, float]
+    Two: TypeAlias = tuple[float, float]
     State: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 
 __all__ = ["lines", "shoulder_loops", "state"]
 
-_GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
 _COARSE: Final = 32  # samples of the room that the shoulder has
-_BISECTIONS: Final = 60
-_SECTIONS: Final = 45
+_BISECTIONS: Final = 54
+_TOUCHING: Final = 1e-13  # relative: room that misses zero by no more than that, touches it
+_AT_END: Final = 1e-4  # sine of the loop's parameter from which on its ends' linear law holds to rounding's square root
 
 
 @leaf_jit
@@ -74,69 +75,81 @@ def lines(arm: Floats, G: Placed, L: Floats) -> None:
 
 
 @leaf_jit
-def _room(arm: Floats, L: Floats, q6: float) -> float:
-    """The square of C's distance beside the extreme of the first joint's equation [m²]; negative: no shoulder."""
+def _room(arm: Floats, L: Floats, q6: float) -> tuple[float, float]:
+    """The square of C's distance beside the extreme of the first joint's equation [m²], and its slope.
+
+    Negative: no shoulder.
+    """
     s, c = sine_cosine(q6)
     x, y = L[0, 0] + L[1, 0] * c + L[2, 0] * s, L[0, 1] + L[1, 1] * c + L[2, 1] * s
     z = L[0, 2] + L[1, 2] * c + L[2, 2] * s
-    k = (arm[SIDE] - L[6, 2] * z) / L[6, 0]
-    room: float = x * x + y * y - k * k
-    return room
+    dx, dy, dz = L[2, 0] * c - L[1, 0] * s, L[2, 1] * c - L[1, 1] * s, L[2, 2] * c - L[1, 2] * s
+    k, dk = (arm[SIDE] - L[6, 2] * z) / L[6, 0], -L[6, 2] * dz / L[6, 0]
+    return x * x + y * y - k * k, 2.0 * (x * dx + y * dy - k * dk)
 
 
 @jit
 def shoulder_loops(arm: Floats, L: Floats, loops: Floats) -> int:
     """Intervals of the last joint on which shoulders exist: middle and half width; half width −1: all round.
 
-    `_room` is a trigonometric polynomial of degree 2, so that eight samples tell it and it has at most four zeros.
+    `_room` is a trigonometric polynomial of degree 2: at most four zeros, and at most four extremes, so that two of
+    them hardly fit between two samples. What a change of sign does not tell, an extreme near zero does.
     """
-    values, N = np.empty(_COARSE + 1), _COARSE
-    for i in range(N + 1):
-        values[i] = _room(arm, L, 2.0 * math.pi * i / N)
-    tiny = 1e-13 * arm[SCALE] * arm[SCALE]
-    ends, number = np.empty(16), 0  # turning points in rising order: into room, out of room, …
+    ends, number, N = np.empty(16), 0, _COARSE  # turning points in rising order: into room, out of room, …
+    first, slope = _room(arm, L, 0.0)
+    left, start, start_slope = 0.0, first, slope
     for i in range(N):
-        left, right = 2.0 * math.pi * i / N, 2.0 * math.pi * (i + 1) / N
-        if (values[i] < 0.0) != (values[i + 1] < 0.0):
-            ends[number] = _edge(arm, L, left, right)
-            number += 1
-            continue
-        before, after = values[i - 1 if i else N - 1], values[i + 2 if i + 1 < N else 1]
-        inside = values[i] < 0.0
-        sign = -1.0 if inside else 1.0
-        # A hump between two samples of one sign may cross unless it is much higher than it is curved.
-        bend = abs(before - values[i]) + abs(after - values[i + 1]) + abs(values[i + 1] - values[i])
-        low = min(abs(values[i]), abs(values[i + 1])) <= bend and number < 14
-        if low and sign * (values[i] - before) <= 0.0 and sign * (after - values[i + 1]) >= 0.0:
-            top = _turning(arm, L, left, right, sign)
-            value = _room(arm, L, top)
-            if inside and value >= -tiny and value <= tiny:
-                ends[number], ends[number + 1] = top, top
-                number += 2
-            elif (value < 0.0) != inside:
-                ends[number], ends[number + 1] = _edge(arm, L, left, top), _edge(arm, L, top, right)
-                number += 2
+        right = 2.0 * math.pi * (i + 1) / N
+        end, end_slope = _room(arm, L, right)
+        if i + 1 == N:  # the same place, and it has to be on the same side of zero
+            end, end_slope = first, slope
+        number = _turning_points(arm, L, (left, right), (start, end), (start_slope, end_slope), ends, number)
+        left, start, start_slope = right, end, end_slope
     if number == 0:
         loops[0, 0], loops[0, 1], loops[0, 2] = 0.0, -1.0, 1.0
         loops[1, 0], loops[1, 1], loops[1, 2] = 0.0, -1.0, -1.0
-        return 2 if values[0] >= 0.0 else 0
-    first = 0 if values[0] < 0.0 else 1
-    for k in range(number // 2):
-        start = ends[2 * k + first]
-        end = ends[(2 * k + first + 1) % number]
+        return 2 if first >= 0.0 else 0
+    into = 0 if first < 0.0 else 1
+    count = min(number // 2, len(loops))
+    for k in range(count):
+        start = ends[2 * k + into]
+        end = ends[(2 * k + into + 1) % number]
         if end < start:
             end += 2.0 * math.pi
         loops[k, 0], loops[k, 1], loops[k, 2] = 0.5 * (start + end), 0.5 * (end - start), 0.0
-    return number // 2
+    return count
+
+
+@leaf_jit
+def _turning_points(arm: Floats, L: Floats, at: Two, values: Two, slopes: Two, ends: Floats, number: int) -> int:
+    """Writes the zeros of `_room` between two angles; the number of ends then."""
+    (left, right), outside = at, values[0] < 0.0
+    if outside != (values[1] < 0.0):
+        ends[number] = _edge(arm, L, left, right)
+        return number + 1
+    sign = -1.0 if outside else 1.0
+    if number >= ends.shape[0] - 2 or sign * slopes[0] > 0.0 or sign * slopes[1] < 0.0:
+        return number
+    top = _extreme(arm, L, left, right, sign)
+    value, _ = _room(arm, L, top)
+    if outside and abs(value) <= _TOUCHING * arm[SCALE] * arm[SCALE]:
+        ends[number], ends[number + 1] = top, top
+        return number + 2
+    if (value < 0.0) != outside:
+        ends[number], ends[number + 1] = _edge(arm, L, left, top), _edge(arm, L, top, right)
+        return number + 2
+    return number
 
 
 @leaf_jit
 def _edge(arm: Floats, L: Floats, a: float, b: float) -> float:
-    """The zero of `_room` between two angles of which one has room."""
-    has = _room(arm, L, a) >= 0.0
+    """The zero of `_room` between two angles of which one has room; on the side that has."""
+    value, _ = _room(arm, L, a)
+    has = value >= 0.0
     for _ in range(_BISECTIONS):
         middle = 0.5 * (a + b)
-        if (_room(arm, L, middle) >= 0.0) == has:
+        value, _ = _room(arm, L, middle)
+        if (value >= 0.0) == has:
             a = middle
         else:
             b = middle
@@ -144,20 +157,15 @@ def _edge(arm: Floats, L: Floats, a: float, b: float) -> float:
 
 
 @leaf_jit
-def _turning(arm: Floats, L: Floats, a: float, b: float, sign: float) -> float:
-    """Where sign · `_room` is least between two angles, by golden section."""
-    x, y = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
-    u = sign * _room(arm, L, x)
-    v = sign * _room(arm, L, y)
-    for _ in range(_SECTIONS):
-        if u < v:
-            b, y, v = y, x, u
-            x = b - _GOLDEN * (b - a)
-            u = sign * _room(arm, L, x)
+def _extreme(arm: Floats, L: Floats, a: float, b: float, sign: float) -> float:
+    """Where sign · `_room` is least between two angles whose slopes say that it is."""
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (a + b)
+        _, slope = _room(arm, L, middle)
+        if sign * slope < 0.0:
+            a = middle
         else:
-            a, x, u = x, y, v
-            y = a + _GOLDEN * (b - a)
-            v = sign * _room(arm, L, y)
+            b = middle
     return 0.5 * (a + b)
 
 
@@ -166,15 +174,15 @@ def state(arm: Floats, L: Floats, loop: Loop, phi: float) -> State:
     """What a loop's parameter stands for: q6, cosine and sine of q1, C in the plane, and both elbows' equations.
 
     a ± b S are the equations of the two elbows, times |C|² [m⁴]; a, b and S² come next, and last the slope of their
-    product along the loop. It is found as the values are, by the chain rule, and is infinite at a loop's two ends.
+    product along the loop. It is found as the values are, by the chain rule.
     """
     q6, half, side = loop
-    rate = 1.0
+    rate, sine = 1.0, 1.0
     if half < 0.0:
         q6 = phi
     else:
-        s, c = sine_cosine(phi)
-        q6, side, rate = q6 + half * c, (1.0 if s >= 0.0 else -1.0), -half * s
+        sine, c = sine_cosine(phi)
+        q6, side, rate = q6 + half * c, (1.0 if sine >= 0.0 else -1.0), -half * sine
     s, c = sine_cosine(q6)
     x, y = L[0, 0] + L[1, 0] * c + L[2, 0] * s, L[0, 1] + L[1, 1] * c + L[2, 1] * s
     z = L[0, 2] + L[1, 2] * c + L[2, 2] * s
@@ -184,11 +192,16 @@ def state(arm: Floats, L: Floats, loop: Loop, phi: float) -> State:
     r = side * math.sqrt(max(x * x + y * y - k * k, 0.0))
     inverse = 1.0 / math.sqrt((x * x + y * y) * (k * k + r * r) + 1e-300)
     c1, s1 = (k * x + r * y) * inverse, (k * y - r * x) * inverse
-    turn = (dk - c1 * dx - s1 * dy) / r
+    # Slopes along the loop. At its ends r vanishes with the rate, and their quotient is the root of another one.
+    per = rate / r if r != 0.0 else 0.0
+    if half >= 0.0 and abs(sine) < _AT_END:
+        per = -math.sqrt(half / (abs(x * dx + y * dy - k * dk) + 1e-300))
+    turn = per * (dk - c1 * dx - s1 * dy)
+    dx, dy, dz, dk = rate * dx, rate * dy, rate * dz, rate * dk
     dr = c1 * dy - s1 * dx - turn * k
     u, v = L[3, 0] + L[4, 0] * c + L[5, 0] * s, L[3, 1] + L[4, 1] * c + L[5, 1] * s
     w, dw = L[3, 2] + L[4, 2] * c + L[5, 2] * s, L[5, 2] * c - L[4, 2] * s
-    du, dv = L[5, 0] * c - L[4, 0] * s, L[5, 1] * c - L[4, 1] * s
+    du, dv, dw = rate * (L[5, 0] * c - L[4, 0] * s), rate * (L[5, 1] * c - L[4, 1] * s), rate * dw
     u, v, du, dv = c1 * u + s1 * v, c1 * v - s1 * u, c1 * du + s1 * dv, c1 * dv - s1 * du
     du, dv = du + turn * v, dv - turn * u
     px = L[7, 0] + L[8, 0] * k + L[8, 1] * r + L[8, 2] * z
@@ -211,4 +224,4 @@ def state(arm: Floats, L: Floats, loop: Loop, phi: float) -> State:
     a, da = zx * t + square * g, dzx * t + zx * dt + dsquare * g + square * dg
     S2, dS2 = lower * square - t * t, lower * dsquare - 2.0 * t * dt
     slope = 2.0 * a * da - 2.0 * zy * dzy * S2 - zy * zy * dS2
-    return q6, c1, s1, px, py, a, zy, S2, rate * slope
+    return q6, c1, s1, px, py, a, zy, S2, slope

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -17,6 +18,7 @@ __all__ = ["play"]
 def play(
     file: Annotated[str, typer.Argument(help="A TOML file of keyframes, or wave, the example that comes along.")],
     robot: Annotated[str | None, typer.Option(help="Another robot than the file names: known, or a URDF.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the motion: .txt, .csv, .json.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """Keyframes, named postures and times, as a motion within limits and joint speeds, or why it cannot be played.
@@ -33,8 +35,12 @@ def play(
         report_json(_data(found))
     else:
         report(found.table(), found.message)
-    if found.refused:
+    if found.trajectory is None:
         raise typer.Exit(1)
+    if output is not None:
+        from nao_kin.trajectory.files import write_trajectory
+
+        typer.echo(f"wrote {write_trajectory(output, found.trajectory)}", err=True)
 
 
 def _data(found: Played) -> dict[str, Any]:
@@ -52,5 +58,4 @@ def _data(found: Played) -> dict[str, Any]:
             {"what": r.what, "reason": r.reason, "from": r.time, "worst": r.worst, "amount": r.amount, "unit": r.unit}
             for r in found.refused
         ],
-        "trajectory": {"joints": found.attempt.joint_names, "times": found.attempt.times, "q": found.attempt.q},
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -29,6 +30,7 @@ def walk(
     cycle: Annotated[float | None, typer.Option(help="Time of a cycle [s]; default half a second a swing.")] = None,
     margin: Annotated[float, typer.Option(help="How far the centre of mass must stay inside the feet [m].")] = 0.0,
     greatest: Annotated[bool, typer.Option("--fastest", help="The greatest multiple of the speed.")] = False,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the motion: .txt, .csv, .json.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """A hexapod walks from standing to standing: reach, limits, joint speeds, balance and slip, measured.
@@ -60,8 +62,12 @@ def walk(
         speed = f"Speed {vx:.4g} m/s forward, {vy:.4g} m/s to the left, {found.command.turn:.4g} rad/s turning; "
         speed += f"a cycle is {found.command.period:.3g} s, duty factor {found.command.rhythm.duty:.3g}."
         report(found.table(), speed, found.message, *([] if slower is None else [_hint(slower)]))
-    if not found.walkable:
+    if found.trajectory is None:
         raise typer.Exit(1)
+    if output is not None:
+        from nao_kin.trajectory.files import write_trajectory
+
+        typer.echo(f"wrote {write_trajectory(output, found.trajectory)}", err=True)
 
 
 def _hint(slower: Walk) -> str:

@@ -64,18 +64,14 @@ def _data(reach: ReachMap) -> dict[str, Any]:
 
 
 def _scene(chain: Chain, reach: ReachMap) -> Scene:
-    """The map around its robot, or by itself where the chain is a table."""
+    """The map around its robot, or around the stick figure of a table."""
     import numpy as np
 
     from nao_kin.urdf_chain import UrdfChain
-    from nao_kin.view.scene import Scene, robot_scene
+    from nao_kin.view.contents import scene_of
+    from nao_kin.view.overlay import chain_scene
     from nao_kin.view.workspace_scene import with_workspace
 
     if not isinstance(chain, UrdfChain):
-        return with_workspace(Scene(chain.name, ()), reach, np.eye(4))
-    robot = chain.robot
-    if chain.base == robot.root:
-        T_root_base = np.eye(4)
-    else:
-        T_root_base = robot.pose(robot.neutral, chain.base, base=robot.root).homogeneous
-    return with_workspace(robot_scene(robot), reach, T_root_base)
+        return with_workspace(chain_scene(chain), reach, np.eye(4))
+    return scene_of(chain.robot, reach)

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
+from nao_kin.table import Column, Table
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -193,6 +195,19 @@ class Judgement:
             "reason": self.reason,
             "command": claim.command,
         }
+
+    def table(self) -> Table:
+        """The same for people, two columns; what is empty is left out."""
+        told = {key.replace("_", " "): value for key, value in self.row().items() if value not in ("", None)}
+        rows = tuple((key, f"{value:.3g}" if isinstance(value, float) else str(value)) for key, value in told.items())
+        return Table((Column("what"), Column("value")), rows, title=f"{self.claim.id}: {self.verdict}")
+
+    def __repr__(self) -> str:
+        measured = "" if self.measured is None else f", residual {self.measured.residual:.2g} {self.claim.unit}"
+        return f"<Judgement {self.claim.id}: {self.verdict}{measured}>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
 
     @property
     def reason(self) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.path import JointPath
 
-__all__ = ["jacobian", "packed_joints", "place"]
+__all__ = ["COLUMN", "MULTIPLIER", "OFFSET", "SLIDES", "jacobian", "packed_joints", "place"]
 
 SLIDES, COLUMN, MULTIPLIER, OFFSET = 12, 13, 14, 15
 

@@ -39,8 +39,8 @@ VOLUME: Final = 1
 LEAST: Final = 2
 """What is measured of the Jacobian's linear part J at each tip: nothing, √det(J Jᵀ), or its smallest singular value."""
 
-_MORE: Final = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
-_MIX: Final = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
+_SHIFTS: Final = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
+_FACTORS: Final = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _UNIT: Final = 2.0**-53
 
 
@@ -148,7 +148,7 @@ def _sample_block(samples: Samples, first: int, Q: Floats) -> None:
             bits = start + np.uint64(first + i) * step
             if samples.mixed:
                 bits = _mixed(bits)
-            Q[i, j] = min(lower[j] + width * (np.float64(bits >> _MORE[3]) * _UNIT), upper[j])
+            Q[i, j] = min(lower[j] + width * (np.float64(bits >> _SHIFTS[3]) * _UNIT), upper[j])
     if samples.cut.size:
         for i in range(Q.shape[0]):
             _cut_down(samples, Q[i])
@@ -160,9 +160,9 @@ def _mixed(bits: np.uint64) -> np.uint64:
 
     Source: G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014, figure 16.
     """
-    bits = (bits ^ (bits >> _MORE[0])) * _MIX[0]
-    bits = (bits ^ (bits >> _MORE[1])) * _MIX[1]
-    return bits ^ (bits >> _MORE[2])
+    bits = (bits ^ (bits >> _SHIFTS[0])) * _FACTORS[0]
+    bits = (bits ^ (bits >> _SHIFTS[1])) * _FACTORS[1]
+    return bits ^ (bits >> _SHIFTS[2])
 
 
 @jit

@@ -9,14 +9,14 @@ import numpy as np
 
 from nao_kin.kernels.compiling import jit
 
-__all__ = ["FAR", "circle_roots", "near_sine_cosine", "sine_cosine"]
+__all__ = ["FAR", "HALF_PI", "circle_roots", "near_sine_cosine", "sine_cosine"]
 
-# π/2 in three parts; the first two have 33 bits, so that their products with whole numbers below 2²⁰ are exact.
-_HALF_PI: Final = (
+HALF_PI: Final = (
     float.fromhex("0x1.921fb544p+0"),
     float.fromhex("0x1.0b4611a6p-34"),
     float.fromhex("0x1.3198a2e037073p-69"),
 )
+"""π/2 in three parts; the first two have 33 bits, so that their products with whole numbers below 2²⁰ are exact."""
 FAR: Final = 1e5
 """Up to this angle [rad] `near_sine_cosine` holds; beyond it the C library computes."""
 
@@ -37,7 +37,7 @@ def near_sine_cosine(v: float) -> tuple[float, float]:
     k_cos.c). k and its bits stay floating-point numbers: the integer floor would keep loops from being vectorised.
     """
     k = np.floor(v * (2.0 / math.pi) + 0.5)
-    r = ((v - k * _HALF_PI[0]) - k * _HALF_PI[1]) - k * _HALF_PI[2]
+    r = ((v - k * HALF_PI[0]) - k * HALF_PI[1]) - k * HALF_PI[2]
     w = r * r
     s = 2.75573137070700676789e-06 + w * (-2.50507602534068634195e-08 + w * 1.58969099521155010221e-10)
     s = 8.33333333332248946124e-03 + w * (-1.98412698298579493134e-04 + w * s)

@@ -27,7 +27,14 @@ if TYPE_CHECKING:
 __all__ = ["Reason", "Refusal", "motor_joints", "refusal_where", "refusals", "said"]
 
 Reason: TypeAlias = Literal[
-    "below its range", "above its range", "too fast", "too far", "too near", "out of balance", "off its place"
+    "below its range",
+    "above its range",
+    "too fast",
+    "too far",
+    "too near",
+    "out of balance",
+    "off its place",
+    "off its aim",
 ]
 
 _ROUNDING = 1e-12  # relative: a motion stretched until a joint moves at its greatest speed may round beyond it

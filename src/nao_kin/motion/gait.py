@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Walk", "WalkCommand", "fastest", "walk"]
 
-_FASTEST: Final = 64.0  # times the speed asked for
-_SHARE: Final = 0.01  # to which the greatest speed is found, relative
+_SHARES: Final = (1e-6, 1e9)  # of the speed asked for, between which the greatest one is looked for
+_SHARE: Final = 0.01  # to which it is found, relative
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -100,7 +100,8 @@ class Walk:
     def speed_share(self) -> Floats:
         """Greatest speed of every joint over what it can do (n,)."""
         allowed = np.array([joint.max_velocity for joint in self.attempt.joints])
-        return np.asarray(np.abs(self.attempt.velocities).max(axis=0) / allowed)
+        with np.errstate(divide="ignore", invalid="ignore"):  # a file may allow a joint no speed at all
+            return np.asarray(np.abs(self.attempt.velocities).max(axis=0) / allowed)
 
     def table(self) -> Table:
         """One row a leg: steps, time on the ground, room to the ends of the joints' ranges, and speed used."""
@@ -161,7 +162,7 @@ def walk(
     centre = np.einsum("nij,nj->ni", T[:, :3, :3], centres_of_mass(robot, attempt)) + T[:, :3, 3]
     margins = support_margins(feet[:, :, :2], down, centre[:, :2])
     refused = (
-        *_missed(found, attempt),
+        *_missed(found, attempt, tolerances),
         *refusals(attempt, tolerances=tolerances),
         *refusal_where(
             margins < command.margin, command.margin - margins, attempt.times, "body", "out of balance", "m"
@@ -191,9 +192,11 @@ def fastest(
     if not best.walkable or not (any(command.velocity) or command.turn):
         return best
     slow, fast = 0.0, 1.0
-    while fast < _FASTEST and (tried := walk(robot, command.at_speed(fast), legs=legs, tolerances=tolerances)).walkable:
+    while (
+        fast < _SHARES[1] and (tried := walk(robot, command.at_speed(fast), legs=legs, tolerances=tolerances)).walkable
+    ):
         best, slow, fast = tried, fast, 2.0 * fast
-    while fast - slow > _SHARE * fast and fast > 1.0 / _FASTEST:
+    while fast - slow > _SHARE * fast and fast > _SHARES[0]:
         middle = 0.5 * (slow + fast)
         tried = walk(robot, command.at_speed(middle), legs=legs, tolerances=tolerances)
         if tried.walkable:
@@ -209,14 +212,14 @@ def _measured(chains: Mapping[str, Chain], q: Floats, T_world_body: Floats) -> F
     return np.asarray(np.einsum("nij,lnj->nli", T_world_body[:, :3, :3], np.array(feet)) + T_world_body[:, None, :3, 3])
 
 
-def _missed(found: BodyBatchResult, attempt: Trajectory) -> list[Refusal]:
+def _missed(found: BodyBatchResult, attempt: Trajectory, tolerances: Tolerances) -> list[Refusal]:
     """Feet out of reach; one that a joint's range keeps from its place has that joint outside of it."""
     refused = []
     for k, leg in enumerate(found.legs):
         missed, times = found.misses_by[:, k], attempt.times
         refused += refusal_where(missed > 0.0, missed, times, f"foot {leg}", "too far", "m")
         refused += refusal_where(missed < 0.0, -missed, times, f"foot {leg}", "too near", "m")
-        astray = ~found.solved[:, k] & (missed == 0.0) & (found.position_error[:, k] > TOLERANCES.position)
+        astray = ~found.solved[:, k] & (missed == 0.0) & (found.position_error[:, k] > tolerances.position)
         refused += refusal_where(astray, found.position_error[:, k], times, f"foot {leg}", "off its place", "m")
     return refused
 

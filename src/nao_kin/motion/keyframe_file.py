@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
+import numpy as np
+
+from nao_kin.arrays import positive, vector
 from nao_kin.errors import InvalidInputError, KeyframeFileError, UnknownNameError, near_matches
 from nao_kin.known import robot_names
 from nao_kin.robot import Robot, load
@@ -66,6 +69,10 @@ class Keyframes:
         between: ``"cubic"`` passes through the keyframes on one smooth curve; ``"stop"`` comes to rest at each.
         too_fast: What to do where a joint would be too fast: refuse, or take longer.
         sample_time: Time between samples [s].
+
+    Raises:
+        InvalidInputError: No keyframes, times that do not increase, or a choice that there is not.
+        UnknownNameError: A keyframe takes a posture that there is not.
     """
 
     robot: Robot
@@ -75,6 +82,18 @@ class Keyframes:
     between: Between = "cubic"
     too_fast: TooFast = "refuse"
     sample_time: float = 0.01
+
+    def __post_init__(self) -> None:
+        for name in ("between", "too_fast"):
+            if getattr(self, name) not in _CHOICES[name]:
+                raise InvalidInputError(name, " or ".join(_CHOICES[name]), _short(getattr(self, name)))
+        positive(self.sample_time, "sample_time", "[s]")
+        for key in self.keys:
+            if key.posture not in self.postures:
+                raise UnknownNameError("posture", key.posture, self.postures, self.name)
+        times = vector([key.time for key in self.keys], "times of keyframes", len(self.keys))
+        if not len(times) or times[0] < 0.0 or (np.diff(times) < _CLOSEST).any():
+            raise InvalidInputError("keyframes", f"times ≥ 0, each {_CLOSEST:g} s or more after the last", str(times))
 
 
 def read_keyframes(path: str | os.PathLike[str], robot: Robot | None = None) -> Keyframes:

@@ -13,7 +13,7 @@ __all__ = ["WalkCommand"]
 
 _MOST_SAMPLES: Final = 200_000
 _SWING: Final = 0.5  # [s]
-_LEAST_SAMPLES: Final = 10  # a cycle
+_LEAST_SAMPLES: Final = 5  # a swing
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +65,9 @@ class WalkCommand:
         values = {"velocity": (vx, vy), "body": (x, y, z, roll, pitch, yaw), "turn": turn, "margin": margin}
         for name, value in values.items():
             object.__setattr__(self, name, value)
-        if self.period < _LEAST_SAMPLES * self.sample_time:
-            expected = f"at most a {_LEAST_SAMPLES}th of the cycle of {self.period:g} s"
+        swing = (1.0 - self.rhythm.duty) * self.period
+        if swing < _LEAST_SAMPLES * self.sample_time:
+            expected = f"at most a {_LEAST_SAMPLES}th of a swing, which takes {swing:g} s"
             raise InvalidInputError("sample_time", expected, f"{self.sample_time:g} s")
         if self.duration + 4.0 * self.period > _MOST_SAMPLES * self.sample_time:
             raise InvalidInputError("duration", f"at most {_MOST_SAMPLES} samples", f"{self.duration:g} s")

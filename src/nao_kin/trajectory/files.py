@@ -48,6 +48,9 @@ def read_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     Args:
         path: A file whose name ends in .txt, .csv or .json.
 
+    Returns:
+        The trajectory, the same to the last bit as the one that was written.
+
     Raises:
         InvalidInputError: Another ending.
         TrajectoryFileError: Unreadable, too large, or malformed: not a finite number, a missing column, a time that

@@ -13,6 +13,7 @@ from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
 from nao_kin.ik.target import Target, TargetLike
 from nao_kin.solving import CLOSED, solve
+from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory.between import error_between
 from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
@@ -39,7 +40,7 @@ class FollowResult:
     """A path in joint space, and in time where it has times.
 
     Attributes:
-        q: Joints (k, n) of the samples that were reached, in order; read-only.
+        q: Joints (k, n) [rad or m] of the samples that were reached, in order; read-only.
         samples: Number of samples asked for.
         status: Why it ended; `Status.SOLVED` if at the last sample.
         cause: What stopped it, `Cause.NONE` if nothing did.
@@ -80,6 +81,27 @@ class FollowResult:
         """Whether every sample was reached without a jump."""
         return len(self.q) == self.samples and self.status is Status.SOLVED
 
+    def table(self) -> Table:
+        """The outcome in numbers."""
+        rows = (
+            ("status", self.status.name),
+            ("samples reached", f"{len(self.q)} of {self.samples}"),
+            ("largest move of a joint [rad or m]", f"{self.largest_move:.4g}, to sample {self.largest_move_at}"),
+            ("largest position error [m]", f"{self.max_position_error:.3g}"),
+            ("position error between samples [m]", f"{self.position_error_between:.3g}"),
+            ("largest rotation error [rad]", f"{self.max_rotation_error:.3g}"),
+            ("rotation error between samples [rad]", f"{self.rotation_error_between:.3g}"),
+            ("smallest singular value", f"{self.smallest_singular_value:.3g}, at {self.smallest_singular_value_at}"),
+            *(() if self.trajectory is None else (("duration [s]", f"{self.trajectory.duration:.4g}"),)),
+        )
+        return Table((Column("what"), Column("value")), rows, title="A path in joint space", note=self.reason)
+
+    def __repr__(self) -> str:
+        return f"<FollowResult {self.status.name}: {len(self.q)} of {self.samples} samples>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
     @property
     def ended_at(self) -> int | None:
         """Number of the sample that was not reached; None if all were."""
@@ -87,7 +109,7 @@ class FollowResult:
 
     @property
     def slowed(self) -> float:
-        """How many times as long it takes as was planned; 1 without times."""
+        """How many times as long it takes as was planned, a plain number; 1 without times."""
         if self.trajectory is None or not self.planned_duration:
             return 1.0
         return self.trajectory.duration / self.planned_duration
@@ -125,6 +147,9 @@ def follow(
         method: A name in `nao_kin.METHODS`; ``"closed"`` takes at each sample the branch nearest to the one before.
         tolerances: When a sample counts as reached.
         name: Name of the trajectory.
+
+    Returns:
+        The joints as far as the path was followed, with why it ended and what was measured on the way.
 
     Raises:
         InvalidInputError: An empty path, a bad target, times that do not fit, limits or a jump that are not positive.

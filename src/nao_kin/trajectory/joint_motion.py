@@ -44,15 +44,18 @@ def joint_motion(
     Args:
         chain: Whose joints; a `Tree` will do.
         q_start: Joints at the start (n,) [rad or m].
-        q_end: Joints at the end (n,).
+        q_end: Joints at the end (n,) [rad or m].
         acceleration: Greatest accelerations, (n,) or one for all [rad/s² or m/s²].
-        braking: Greatest decelerations; as `acceleration` unless given.
+        braking: Greatest decelerations, (n,) or one for all [rad/s² or m/s²]; as `acceleration` unless given.
         max_velocity: Greatest speeds, (n,) or one for all [rad/s or m/s]; the chain's own unless given.
         straight: Whether the joints keep in proportion, which is a straight line in joint space and takes longer where
             one joint is the slowest to speed up and another the slowest to turn.
         sampling: Time between samples [s].
         start_time: When it starts [s].
         name: Name of the trajectory.
+
+    Returns:
+        The motion, sampled; its last sample is `q_end` exactly.
 
     Raises:
         InvalidInputError: Shapes do not fit, numbers are not positive, or a joint has no greatest speed and none is

@@ -65,11 +65,11 @@ class PositionLine:
 
     @property
     def angle(self) -> float:
-        """0: the orientation is free."""
+        """A plain 0 [rad]: the orientation is free."""
         return 0.0
 
     def target(self, share: float) -> Target:
-        """The position at a share of the way."""
+        """The position in the base frame at a share of the way, 0 … 1."""
         return Target.position(_on_line(self.start, self.end, _share(share)))
 
 
@@ -107,7 +107,7 @@ class PoseLine:
         return rotation_distance(self.start, self.end)
 
     def target(self, share: float) -> Target:
-        """The pose at a share of the way."""
+        """The pose in the base frame at a share of the way, 0 … 1."""
         part = _share(share)
         if part in (0.0, 1.0):
             return Target.pose(self.end if part else self.start)
@@ -126,7 +126,7 @@ class Screw:
     Attributes:
         start: T_base_tip.
         end: T_base_tip.
-        twist: log(T_start⁻¹ T_end), (linear; angular) in tip axes (6,).
+        twist: log(T_start⁻¹ T_end), (linear; angular) in tip axes (6,) [m; rad].
     """
 
     start: pin.SE3
@@ -155,7 +155,7 @@ class Screw:
         return float(np.linalg.norm(self.twist[3:]))
 
     def target(self, share: float) -> Target:
-        """The pose at a share of the way."""
+        """The pose in the base frame at a share of the way, 0 … 1."""
         part = _share(share)
         if part in (0.0, 1.0):
             return Target.pose(self.end if part else self.start)

@@ -88,6 +88,9 @@ def timed(
         sampling: Time between samples [s]; the last step is shorter where it has to be.
         start_time: When it starts [s].
 
+    Returns:
+        The path with its times, for `nao_kin.follow`.
+
     Raises:
         InvalidInputError: A rate is not positive, a speed at an end is above the limit, a pure turn without limits of
             the turn, or too many samples.

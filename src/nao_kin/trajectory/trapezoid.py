@@ -33,12 +33,13 @@ class Trapezoid:
 
     Attributes:
         start: Position before [m or rad].
-        end: Position after.
+        end: Position after [m or rad].
         max_velocity: Greatest speed, either way [m/s or rad/s].
         acceleration: Greatest acceleration in the direction from start to end [m/s² or rad/s²].
-        braking: Greatest acceleration against it. Where start and end coincide, the direction is the positive one.
-        start_velocity: Speed at the start, signed.
-        end_velocity: Speed at the end, signed.
+        braking: Greatest acceleration against it [m/s² or rad/s²]. Where start and end coincide, the direction is the
+            positive one.
+        start_velocity: Speed at the start, signed [m/s or rad/s].
+        end_velocity: Speed at the end, signed [m/s or rad/s].
         start_time: When it starts [s].
         course: The three phases, in the direction of travel.
     """
@@ -105,7 +106,7 @@ class Trapezoid:
 
     @property
     def direction(self) -> float:
-        """1 or −1: the sign that travelling has; 1 where start and end coincide."""
+        """The sign of travelling, a plain 1 or −1; 1 where start and end coincide."""
         return -1.0 if self.end < self.start else 1.0
 
     @property
@@ -133,7 +134,7 @@ class Trapezoid:
 
     @property
     def peak_velocity(self) -> float:
-        """Speed of the cruise, signed; in a triangle, the speed at its peak."""
+        """Speed of the cruise, signed [m/s or rad/s]; in a triangle, the speed at its peak."""
         return self.direction * self.course.v
 
     @overload
@@ -141,7 +142,7 @@ class Trapezoid:
     @overload
     def position(self, time: ArrayLike) -> Floats: ...
     def position(self, time: ArrayLike) -> Floats | float:
-        """Position at a time or at many [s]; before the start and after the end it stands there."""
+        """Position [m or rad] at a time or at many (k,) [s]; before the start and after the end it stands there."""
         t, left = self._since_start(time), self._until_end(time)
         sign, course = self.direction, self.course
         t_1, t_2 = course.first, course.first + course.cruise
@@ -163,7 +164,7 @@ class Trapezoid:
     @overload
     def velocity(self, time: ArrayLike) -> Floats: ...
     def velocity(self, time: ArrayLike) -> Floats | float:
-        """Speed at a time or at many [s], signed; 0 before the start and after the end."""
+        """Speed [m/s or rad/s] at a time or at many (k,) [s], signed; 0 before the start and after the end."""
         t, left = self._since_start(time), self._until_end(time)
         sign, course, peak = self.direction, self.course, self.peak_velocity
         t_1, t_2 = course.first, course.first + course.cruise
@@ -178,14 +179,14 @@ class Trapezoid:
     @overload
     def acceleration_at(self, time: ArrayLike) -> Floats: ...
     def acceleration_at(self, time: ArrayLike) -> Floats | float:
-        """Acceleration at a time or at many [s], signed; where it changes, the new one. 0 before and after."""
+        """Acceleration [m/s² or rad/s²] at a time or many (k,) [s], signed; at a change, the new one. 0 outside."""
         t, sign, course = self._since_start(time), self.direction, self.course
         a_first, a_last = self._accelerations
         phases = [t < 0.0, t < course.first, t < course.first + course.cruise, self._until_end(time) < 0.0]
         return _as_given(np.select(phases, [0.0, sign * a_first, 0.0, sign * a_last], np.zeros_like(t)))
 
     def sample_times(self, sampling: float = SAMPLING) -> Floats:
-        """Times of its samples; see `nao_kin.trajectory.sampling.sample_times`."""
+        """Times of its samples (k,) [s] at a sampling interval [s]; see `nao_kin.trajectory.sampling.sample_times`."""
         return sample_times(self.duration, sampling, self.start_time)
 
     @property

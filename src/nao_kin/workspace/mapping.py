@@ -185,9 +185,9 @@ def _grid(chain: Chain, voxel: float | None, measure: Measure, axes: str) -> Cel
     low = np.floor((shell.centre - shell.outer) / edge) - 1.0  # one more, for what rounding adds to the reach
     high = np.floor((shell.centre + shell.outer) / edge) + 1.0
     shape = high - low + 1.0
-    if not float(np.prod(shape)) <= MOST_CELLS:
-        least = edge * (float(np.prod(shape)) / MOST_CELLS) ** (1.0 / 3.0)
-        raise InvalidInputError("voxel", f"at least about {least:.2g} m ({MOST_CELLS} cubes)", f"{edge:g} m")
+    if not math.prod(shape.tolist()) <= MOST_CELLS:
+        least = 1.01 * 2.0 * shell.outer / (MOST_CELLS ** (1.0 / 3.0) - 4.0)
+        raise InvalidInputError("voxel", f"at least {least:.3g} m ({MOST_CELLS} cubes)", f"{edge:g} m")
     whole, counts = np.int64, np.array([axis in axes for axis in "xyz"], dtype=np.int64)
     code = MEASURES.index(measure)
     return Cells(edge, low.astype(whole), shape.astype(whole), counts, code, _scale(chain, code, len(axes)))

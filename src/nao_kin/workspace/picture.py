@@ -37,7 +37,7 @@ def map_figure(reach: ReachMap, layer: Layer, through: ArrayLike | None) -> Figu
     for axes, (across, up, along), flat in zip(views, _VIEWS, flats, strict=True):
         _draw(axes, reach, flat, (across, up), top)
         axes.set_title(_title(reach, along, layer, cell))
-    views[0].legend(loc="upper right", fontsize="small")
+    figure.legend(handles=views[0].lines, loc="outside lower left", fontsize="small")
     figure.colorbar(views[0].images[0], ax=views, label=_label(reach, layer))
     figure.suptitle(f"{reach.chain}: where {reach.tip_name} can be, in {reach.base_name}")
     return figure
