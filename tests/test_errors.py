@@ -11,6 +11,7 @@ from nao_kin import errors
 
 LEAVES = (
     errors.AuditError(3, "1 m", "2 m"),
+    errors.FrameError("a length of 0 bytes", fatal=True),
     errors.UnknownNameError("frame", "larm", ["LArm", "RArm"], "nao"),
     errors.InvalidInputError("q", "5 numbers", "4 numbers"),
     errors.NoPathError("l_sole", "LLeg", "nao"),

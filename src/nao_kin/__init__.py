@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.checks.checker import check as check
     from nao_kin.checks.finding import Finding as Finding
     from nao_kin.checks.finding import Report as Report
+    from nao_kin.collision.model import CollisionModel as CollisionModel
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from nao_kin.solving import solve as solve
     from nao_kin.solving import solve_batch as solve_batch
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.trajectory.causes import Cause as Cause
     from nao_kin.trajectory.files import read_trajectory as read_trajectory
     from nao_kin.trajectory.files import write_trajectory as write_trajectory
     from nao_kin.trajectory.following import FollowResult as FollowResult
@@ -72,8 +74,10 @@ _HOME = {
     "BatchResult": "ik.batch",
     "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
+    "Cause": "trajectory.causes",
     "Chain": "chain",
     "ChainJoint": "chain",
+    "CollisionModel": "collision.model",
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",

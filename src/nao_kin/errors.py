@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AuditError",
+    "FrameError",
     "InvalidInputError",
     "KeyframeFileError",
     "MissingExtraError",
@@ -119,6 +120,19 @@ class AuditError(NaoKinError, RuntimeError):
         super().__init__(
             f"Row {row}: the chain measures {by_chain}, the compiled kernel {by_kernel}. Please report it."
         )
+
+
+class FrameError(NaoKinError, ValueError):
+    """A message of the streaming protocol was refused.
+
+    Attributes:
+        reason: What is wrong with it, one sentence without a full stop.
+        fatal: Whether the place of the next message is lost too, so that the connection has to end.
+    """
+
+    def __init__(self, reason: str, *, fatal: bool = False) -> None:
+        self.reason, self.fatal = reason, fatal
+        super().__init__(f"Message refused: {reason}.")
 
 
 class _FileError(NaoKinError, ValueError):
