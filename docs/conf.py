@@ -34,6 +34,7 @@ suppress_warnings = ["myst.header"]  # a changelog goes from the title straight 
 
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "Floats")}
 napoleon_use_ivar = True
 napoleon_attr_annotations = False
 napoleon_use_rtype = False

@@ -50,6 +50,18 @@ def needs(module: str) -> Any:
     return importlib.import_module(module)
 
 
+@pytest.fixture
+def this_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Makes notebooks run on this very interpreter, whatever kernels the machine has."""
+    kernel = tmp_path / "kernels" / "python3"
+    kernel.mkdir(parents=True)
+    (kernel / "kernel.json").write_text(
+        f'{{"argv": ["{sys.executable}", "-m", "ipykernel_launcher", "-f", "{{connection_file}}"], '
+        '"display_name": "Python 3", "language": "python"}'
+    )
+    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path), prepend=os.pathsep)
+
+
 MIMIC = """<robot name="m"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
 <joint name="z_lead" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
   <limit lower="-1" upper="1" effort="1" velocity="2"/></joint>
@@ -66,15 +78,3 @@ def mimic(tmp_path: Path) -> nk.Robot:
     path = tmp_path / "m.urdf"
     path.write_text(MIMIC)
     return nk.load(path)
-
-
-@pytest.fixture
-def this_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Makes notebooks run on this very interpreter, whatever kernels the machine has."""
-    kernel = tmp_path / "kernels" / "python3"
-    kernel.mkdir(parents=True)
-    (kernel / "kernel.json").write_text(
-        f'{{"argv": ["{sys.executable}", "-m", "ipykernel_launcher", "-f", "{{connection_file}}"], '
-        '"display_name": "Python 3", "language": "python"}'
-    )
-    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path), prepend=os.pathsep)

@@ -22,6 +22,7 @@ from nao_kin.cli.bench.peers import Peer, Unsuited, installed_peers
 from nao_kin.cli.bench.referee import NEAR, Referee
 from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
 from nao_kin.cli.output import OutputFormat
+from tests.conftest import needs
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,6 +32,7 @@ TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
 METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
+TRAJECTORY = ("trajectory", "--cases", "200", "--targets", "10")
 CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
 GAIT = ("gait", "--paths", "1", "--duration", "1.5", "--no-speeds")
 GUARD = ("guard", "--motions", "1")
@@ -85,7 +87,9 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO])
+@pytest.mark.parametrize(
+    "arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TRAJECTORY, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO]
+)
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
@@ -172,6 +176,15 @@ def test_the_practicums_tasks_report_every_fault() -> None:
     assert missed(data, "pseudo-inverse") == []
     assert {row["count"] for row in data["task_1ef_near"]} >= {128, 64, 1}
     assert sum(note.startswith(("1f,", "1g,")) for note in data["notes"]) == 4
+
+
+def test_trajectory_agrees_with_ruckig_and_names_what_ends_a_line() -> None:
+    needs("ruckig")
+    data = data_of(*TRAJECTORY)
+    assert [goal["what"] for goal in data["goals"] if not goal["met"]] == []
+    assert {row["line"]: row["completed"] for row in data["lines"]}["out of reach"] is False
+    assert all(row["cause"] != "NONE" for row in data["lines"] if not row["completed"])
+    assert len(data["task_2b"]) == 2
 
 
 def test_closed_recovers_everything_and_prices_the_folded_arm() -> None:

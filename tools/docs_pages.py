@@ -25,20 +25,21 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.catalogue import Entry
 
-FOLDER: Final = Path(__file__).resolve().parent.parent / "docs" / "reference"
+DOCS: Final = Path(__file__).resolve().parent.parent / "docs"
+FOLDER: Final = DOCS / "reference"
 
 GROUPS: Final[tuple[tuple[str, str, tuple[str, ...]], ...]] = (
     (
         "api-robots",
-        "Robots, chains and tables",
+        "API: robots, chains and tables",
         ("chain", "dh", "dh_from_chain", "dh_row", "errors", "known", "robot", "tolerances", "tree", "urdf_chain"),
     ),
-    ("api-comparing", "Comparing, and the ledger", ("crosscheck", "documents")),
-    ("api-solving", "Inverse kinematics", ("ik", "solving")),
-    ("api-closed-forms", "Closed forms", ("analytic",)),
-    ("api-moving", "Trajectories and workspaces", ("trajectory", "workspace")),
-    ("api-checking", "Checking URDF files", ("checks",)),
-    ("api-pages", "Pages", ("view",)),
+    ("api-comparing", "API: comparing, and the ledger", ("crosscheck", "documents")),
+    ("api-solving", "API: inverse kinematics", ("ik", "solving")),
+    ("api-closed-forms", "API: closed forms", ("analytic",)),
+    ("api-moving", "API: trajectories and workspaces", ("trajectory", "workspace")),
+    ("api-checking", "API: checking URDF files", ("checks",)),
+    ("api-pages", "API: pages", ("view",)),
 )
 """Page, title and home modules of the public names; what lives elsewhere comes on a page of its own."""
 
@@ -127,8 +128,8 @@ def api_pages() -> dict[str, str]:
         pages[slug] = _reference(title, [_directive(name) for name in names])
         left = {name: home for name, home in left.items() if name not in names}
     if left:
-        pages["api-more"] = _reference("More public names", [_directive(name) for name in left])
-    pages["api-types"] = _reference("What public names hand out", [_class(name) for name in handed_out()])
+        pages["api-more"] = _reference("API: more public names", [_directive(name) for name in left])
+    pages["api-types"] = _reference("API: what public names hand out", [_class(name) for name in handed_out()])
     for module in documented_modules():
         pages[f"module-{module.replace('.', '-')}"] = _reference(f"nao_kin.{module}", [_module(module)])
     return pages
@@ -204,14 +205,27 @@ def _class(name: str) -> str:
 def _module(module: str) -> str:
     """What documents a module, without what has its place among the public names."""
     found = importlib.import_module(f"nao_kin.{module}")
-    public = [getattr(nk, name) for name in nk._HOME]  # noqa: SLF001
-    elsewhere = [name for name in found.__all__ if any(getattr(found, name) is value for value in public)]
+    public = [getattr(nk, name) for name in nk.__all__]
+    others = {f"nao_kin.{other}" for other in documented_modules()} - {f"nao_kin.{module}"}
+    elsewhere = [
+        name
+        for name in found.__all__
+        if any(getattr(found, name) is value for value in public)
+        or getattr(getattr(found, name), "__module__", "") in others
+    ]
     without = [f"   :exclude-members: {', '.join(elsewhere)}"] if elsewhere else []
     return "\n".join([f".. automodule:: nao_kin.{module}", "   :members:", *without])
 
 
 def _reference(title: str, directives: list[str]) -> str:
     return _page([f"# {title}", "", "```{eval-rst}", "\n\n".join(directives), "```"])
+
+
+def more() -> str:
+    """A list of the pages that the first page does not name, for it to include."""
+    first = (DOCS / "index.md").read_text(encoding="utf-8").split()
+    names = [path.stem for path in sorted(DOCS.glob("*.md")) if path.stem not in ("index", *first)]
+    return "\n".join(["```{toctree}", ":caption: More", ":maxdepth: 1", "", *names, "```", ""])
 
 
 def _plain(text: str) -> str:
@@ -237,7 +251,7 @@ def pages() -> dict[str, str]:
 def write() -> None:
     """Writes them, and leaves alone what has not changed, so that a second build is a quick one."""
     FOLDER.mkdir(exist_ok=True)
-    wanted = {FOLDER / f"{name}.md": text for name, text in pages().items()}
+    wanted = {FOLDER / f"{name}.md": text for name, text in pages().items()} | {FOLDER / "more.txt": more()}
     for path in set(FOLDER.glob("*.md")) - set(wanted):
         path.unlink()
     for path, text in wanted.items():

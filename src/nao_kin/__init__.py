@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from nao_kin.solving import solve as solve
     from nao_kin.solving import solve_batch as solve_batch
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.trajectory.causes import Cause as Cause
     from nao_kin.trajectory.files import read_trajectory as read_trajectory
     from nao_kin.trajectory.files import write_trajectory as write_trajectory
     from nao_kin.trajectory.following import FollowResult as FollowResult
@@ -73,6 +74,7 @@ _HOME = {
     "BatchResult": "ik.batch",
     "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
+    "Cause": "trajectory.causes",
     "Chain": "chain",
     "ChainJoint": "chain",
     "CollisionModel": "collision.model",

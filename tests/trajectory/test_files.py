@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +16,6 @@ from nao_kin.trajectory import files
 from nao_kin.trajectory.files import format_trajectory, parse_trajectory, read_trajectory, write_trajectory
 from nao_kin.trajectory.trajectory import Trajectory
 from tests.conftest import robot
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 FORMS = ("txt", "csv", "json")
 
@@ -199,6 +197,18 @@ def test_random_damage_is_refused_or_read_but_never_more(form: str) -> None:
             continue
         assert np.isfinite(found.q).all()
         assert (np.diff(found.times) > 0).all()
+
+
+def test_the_documented_files_are_read() -> None:
+    page = (Path(__file__).parent.parent.parent / "docs" / "trajectory-files.md").read_text(encoding="utf-8")
+    plain, full, message = re.findall(r"```text\n(.*?)```", page, flags=re.DOTALL)
+    np.testing.assert_array_equal(parse_trajectory(plain, "txt").q[0], [math.pi, 3.490658503988659])
+    found = parse_trajectory(full, "txt")
+    assert (found.name, found.joints[0].max_velocity) == ("line", 0.6283185307179586)
+    with pytest.raises(TrajectoryFileError) as caught:
+        parse_trajectory(plain.replace("\n", "\n\n\n\n\n", 1).replace("3.490658503988659", "nan"), "txt", "line.txt")
+    assert str(caught.value).split(":", 2)[2] == message.strip().split(":", 2)[2]
+    assert f"{files.LARGEST_FILE >> 20} MiB" in page
 
 
 def test_the_json_is_json() -> None:

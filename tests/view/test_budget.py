@@ -14,7 +14,7 @@ from nao_kin.robot import Robot, load
 from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
 from nao_kin.view.export import export_html, show
 from nao_kin.view.page import page
-from nao_kin.view.scene import robot_scene
+from nao_kin.view.robot_scene import robot_scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,7 +39,7 @@ def test_a_large_robot_fits_and_says_how(file: str, max_mb: float, tmp_path: Pat
     assert 0.85 * max_mb * 1e6 < size <= max_mb * 1e6  # the room is used
     text = written.read_text(encoding="utf-8")
     (said,) = re.findall(r"Simplified, so that the page stays below ([\d.]+) MB: (\d+) of (\d+) triangles", text)
-    whole = sum(len(mesh.faces) for node in robot_scene(model).nodes for mesh in node.meshes)
+    whole = sum(len(mesh.faces) for node in robot_scene(model).nodes for mesh in (*node.meshes, *node.collisions))
     assert (float(said[0]), int(said[2])) == (max_mb, whole)
     assert 0 < int(said[1]) < whole
 

@@ -72,7 +72,10 @@ def test_no_solutions_are_nothing_to_show() -> None:
 def test_a_result_of_another_robot_is_refused() -> None:
     with pytest.raises(InvalidInputError, match="jaco2"):
         scene_of(robot("nao"), jaco2_branches())
-    assert scene_of(robot("jaco2"), jaco2_branches()).postures
+    assert scene_of(nk.load("jaco2"), jaco2_branches()).postures  # the same file, loaded again
+    table = nk.document_chain("practicum_jaco2")
+    with pytest.raises(InvalidInputError, match="one of practicum_jaco2"):
+        scene_of(robot("jaco2"), nk.solve(table, table.pose([0.3, 2.5, 1.5, 0.4, 0.5, 0.6])))
 
 
 def test_a_run_ends_at_the_returned_joints_and_keeps_every_iterate() -> None:

@@ -115,6 +115,12 @@ def test_order_and_colours_stay_and_one_object_stays_one() -> None:
     assert (first.colour, second.colour) == (ball.colour, box.colour)
 
 
+def test_what_matters_less_gets_less() -> None:
+    before = [mesh(trimesh.creation.icosphere(5)) for _ in range(2)]
+    shown, hidden = decimated(before, 11_000, [1.0, 0.1])
+    assert len(shown.faces) == pytest.approx(10 * len(hidden.faces), rel=0.05)
+
+
 def test_enough_is_left_alone() -> None:
     before = [mesh(body) for body in bodies()]
     assert all(a is b for a, b in zip(before, decimated(before, triangles(before)), strict=True))

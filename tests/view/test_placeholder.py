@@ -12,7 +12,7 @@ from nao_kin.robot import load
 from nao_kin.urdf.elements import Box, Inertial, MeshFile, Origin, Solid
 from nao_kin.view.placeholder import COLOUR, EDGE, placeholder_box, sign_corners
 from nao_kin.view.record import recorded
-from nao_kin.view.scene import robot_scene
+from nao_kin.view.robot_scene import robot_scene
 
 if TYPE_CHECKING:
     from pathlib import Path

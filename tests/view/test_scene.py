@@ -120,3 +120,17 @@ def test_a_shape_beyond_all_measure_is_a_note(tmp_path: Path) -> None:
     scene = robot_scene(load(path))
     assert [mesh.sign is None for mesh in scene.nodes[0].meshes] == [True, False]
     assert "box" in scene.notes[0]
+
+
+def test_collision_shapes_that_are_the_visuals_come_once(tmp_path: Path) -> None:
+    path = tmp_path / "twice.urdf"
+    box, ball = '<geometry><box size="1 2 3"/></geometry>', '<geometry><sphere radius="0.2"/></geometry>'
+    path.write_text(
+        f'<robot name="twice"><link name="same"><visual>{box}</visual><collision>{box}</collision></link>'
+        f'<link name="other"><visual>{box}</visual><collision>{ball}</collision></link>'
+        '<joint name="j" type="fixed"><parent link="same"/><child link="other"/></joint></robot>',
+        encoding="utf-8",
+    )
+    same, other = robot_scene(load(path)).nodes
+    assert (same.collides, len(same.collisions)) == (True, 0)
+    assert (other.collides, len(other.collisions)) == (False, 1)

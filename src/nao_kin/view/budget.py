@@ -21,8 +21,9 @@ __all__ = ["DEFAULT_MAX_MB", "fitted"]
 DEFAULT_MAX_MB: Final = 5.0
 """Largest page [MB, of a million bytes] unless somebody asks for another."""
 
-SHAPES: Final = ("meshes", "collisions")
-"""Fields of a node that hold meshes, all of which count."""
+SHAPES: Final = {"meshes": 1.0, "collisions": 0.1}
+"""Fields of a node that hold meshes, all of which take room, and what a square metre of them counts: collision shapes
+are hidden until somebody asks for them."""
 
 FEWEST_EACH: Final = 12
 """Triangles of a mesh below which a page is not made smaller: it would show boxes."""
@@ -52,12 +53,13 @@ def fitted(scene: Scene, max_mb: float, render: Callable[[Scene], str]) -> str:
     if _size(page) <= limit:
         return page
     meshes = [mesh for node in scene.nodes for field in SHAPES for mesh in getattr(node, field)]
+    importance = [SHAPES[field] for node in scene.nodes for field in SHAPES for _ in getattr(node, field)]
     bare = _size(render(_refilled(scene, [])))
     whole, fewest = _triangles(meshes), FEWEST_EACH * len(meshes)
     triangles, size = whole, _size(page)
     while triangles > fewest:
         triangles = max(fewest, int(MARGIN * triangles * max(limit - bare, 0) / (size - bare)))
-        simpler = decimated(meshes, triangles)
+        simpler = decimated(meshes, triangles, importance)
         note = f"Simplified, so that the page stays below {max_mb:g} MB: {_triangles(simpler)} of {whole} triangles."
         page = render(replace(_refilled(scene, simpler), notes=(*scene.notes, note)))
         size = _size(page)

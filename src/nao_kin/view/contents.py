@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, Union, cast
 
 import numpy as np
 
-from nao_kin.chain import Chain, JointSpace, OutsideLimit
+from nao_kin.chain import Chain, OutsideLimit
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
@@ -85,8 +85,8 @@ def _robot_with(robot: Robot, content: Any) -> Scene:
     if isinstance(content, Mapping):
         return _postures_scene(robot, content)
     scene = _scene(content, explain=False)
-    if (owner := _space_of(content).robot) is not robot:  # type: ignore[attr-defined]
-        raise InvalidInputError("content", f"a result of {robot.name}", f"one of {owner.name if owner else 'a table'}")
+    if scene.sha256 != robot.document.sha256:
+        raise InvalidInputError("content", f"a result of {robot.name}", f"one of {scene.title}")
     return scene
 
 
@@ -122,14 +122,23 @@ def _postures_scene(robot: Robot, content: Mapping[str, Any]) -> Scene:
         raise InvalidInputError("postures", "a posture for every name", f"{content[odd]!r} for {str(odd)[:60]!r}")
     expanded = {str(name): robot.expand(posture) for name, posture in named.items()}
     outside = {name: robot.outside_limits(posture) for name, posture in expanded.items()}
+    scene = robot_scene(robot, next(iter(expanded.values())))
     return replace(
-        robot_scene(robot, next(iter(expanded.values()))),
-        notes=tuple(f"Posture {name}, outside its limits: {one}." for name in outside for one in outside[name]),
+        scene,
+        notes=(
+            *(f"Posture {name}, outside its limits: {one}." for name in outside for one in outside[name]),
+            *_not_shown(scene),
+        ),
         postures=tuple(NamedPosture(name, values, (_limits(outside[name]),)) for name, values in expanded.items()),
         posture_columns=("limits",),
         ghosts=True,
         produced=f"{len(expanded)} named postures",
     )
+
+
+def _not_shown(scene: Scene) -> tuple[str, ...]:
+    """The scene's notes without those on limits, which a list of postures says for each."""
+    return tuple(note for note in scene.notes if not note.startswith("Outside its limits"))
 
 
 def _limits(outside: tuple[OutsideLimit, ...]) -> str:
@@ -176,14 +185,6 @@ def _motors(scene: Scene, chain: SceneChain) -> set[str]:
             break
         index = node.parent
     return found
-
-
-def _space_of(content: Any) -> JointSpace:
-    """The chain or tree of a result or of solutions."""
-    if isinstance(content, tuple):
-        content = content[0]
-    problem = content.problem
-    return cast("JointSpace", getattr(problem, "chain", None) or problem.tree)
 
 
 def _space_scene(space: Chain | Tree, q: list[float], targets: Mapping[str, Target]) -> Scene:
@@ -246,7 +247,7 @@ def _solutions_scene(solutions: Solutions) -> Scene:
     told = f"{len(solutions)} solutions of a {target.kind} target by closed form, {inside} of them within limits"
     return replace(
         scene,
-        notes=tuple(note for note in scene.notes if not note.startswith("Outside its limits")),
+        notes=_not_shown(scene),
         postures=postures,
         posture_columns=("mm", "mrad", "limits"),
         ghosts=True,

@@ -29,7 +29,7 @@ TOLERATED: Final = 1.1
 """How far above its share a mesh may stay before its vertices are lumped together."""
 
 
-def decimated(meshes: Sequence[Mesh], triangles: int) -> tuple[Mesh, ...]:
+def decimated(meshes: Sequence[Mesh], triangles: int, importance: Sequence[float] | None = None) -> tuple[Mesh, ...]:
     """The same meshes with at most about `triangles` triangles in all, in the same order and colours.
 
     Edges are collapsed where the surface moves least (quadric error metric, Garland and Heckbert 1997), open borders
@@ -40,9 +40,11 @@ def decimated(meshes: Sequence[Mesh], triangles: int) -> tuple[Mesh, ...]:
     Args:
         meshes: The meshes; one object that occurs twice counts twice and comes back as one object.
         triangles: How many they may have together.
+        importance: What a visible square metre of each counts next to others; 1 by default.
     """
     counts = np.array([len(mesh.faces) for mesh in meshes], dtype=np.int64)
-    allowed = shares(counts, np.array([_visible_size(mesh) for mesh in meshes]), triangles)
+    sizes = np.array([_visible_size(mesh) for mesh in meshes])
+    allowed = shares(counts, sizes if importance is None else sizes * importance, triangles)
     done: dict[int, Mesh] = {}
     for mesh, most in zip(meshes, allowed.tolist(), strict=True):
         if id(mesh) not in done:

@@ -99,7 +99,7 @@ def show(
         content: As for `export_html`.
         height: Height of the frame in CSS pixels.
         explain: As for `export_html`.
-        max_mb: As for `export_html`.
+        max_mb: As for `export_html` [MB].
 
     Returns:
         What Jupyter displays, also after the notebook was saved as HTML.

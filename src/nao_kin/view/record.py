@@ -29,7 +29,7 @@ KEY_LIGHT_FROM = (0.45, -0.35, 0.82)
 RIM_LIGHT_FROM = (-0.55, 0.75, 0.45)
 """Direction of the light from behind."""
 COLLISION = (0.16, 0.62, 0.52, 0.4)
-"""What collision shapes are drawn in."""
+"""What collision shapes are drawn in; stage.js says it too."""
 DARKEST = 0.07
 """What black is drawn as, in 0…1, with everything between it and white in proportion: shape does not show on black."""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from nao_kin.robot import Robot
     from nao_kin.urdf.document import UrdfDocument
-    from nao_kin.urdf.elements import UrdfJoint
+    from nao_kin.urdf.elements import Origin, Shape, Solid, UrdfJoint
     from nao_kin.view.scene import MovingKind
 
 __all__ = ["robot_scene"]
@@ -70,12 +70,18 @@ def _node(
 ) -> Node:
     link = document.link(name)
     meshes = triangulator.link(link)
-    collisions = triangulator.link(replace(link, visuals=link.collisions))
+    # Many files name the same mesh for both: it is put on the page once.
+    collides = bool(link.collisions) and _outlines(link.collisions) == _outlines(link.visuals)
+    collisions = () if collides else triangulator.link(replace(link, visuals=link.collisions))
     origin = from_xyz_rpy((0, 0, 0), (0, 0, 0)) if joint is None else from_xyz_rpy(joint.origin.xyz, joint.origin.rpy)
     drive = None
     if joint is not None and joint.kind != "fixed":
         drive = Drive(joint.name, joint.axis, joint.kind == "prismatic")
-    return Node(name, parent, joint.name if joint else None, origin.homogeneous, meshes, collisions, drive)
+    return Node(name, parent, joint.name if joint else None, origin.homogeneous, meshes, collisions, collides, drive)
+
+
+def _outlines(solids: tuple[Solid, ...]) -> set[tuple[Shape, Origin]]:
+    return {(solid.shape, solid.origin) for solid in solids}
 
 
 def _tree(document: UrdfDocument) -> list[tuple[str, UrdfJoint | None, int | None]]:

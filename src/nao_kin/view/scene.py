@@ -73,7 +73,8 @@ class Node:
         joint: Name of the joint between the parent and this node, fixed ones included; None where there is none.
         placement: Pose of this node in its parent's frame, (4, 4), where its joint is at 0.
         meshes: Its triangles, in this node's frame.
-        collisions: The shapes of its collision elements, likewise.
+        collisions: The shapes of its collision elements, likewise; empty where they are its `meshes`.
+        collides: Whether its collision elements are the very shapes of `meshes`.
         drive: What moves it; None where nothing does.
     """
 
@@ -83,6 +84,7 @@ class Node:
     placement: Floats
     meshes: tuple[Mesh, ...] = ()
     collisions: tuple[Mesh, ...] = ()
+    collides: bool = False
     drive: Drive | None = None
 
 

@@ -58,6 +58,7 @@ def _node(node: Node, number: Mapping[str, int]) -> dict[str, Any]:
         "label": node.label,
         "parent": -1 if node.parent is None else node.parent,
         "placement": _columns(node.placement),
+        "collides": node.collides,
         "drive": None
         if drive is None
         else {

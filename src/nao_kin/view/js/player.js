@@ -47,8 +47,7 @@ class Player {
 
   values(sample) {
     const values = [...this.state.first], row = this.motion.q[sample];
-    const plain = { joints: this.state.joints, values };
-    this.motion.joints.forEach((joint, k) => State.prototype.drive.call(plain, joint, row[k]));
+    this.motion.joints.forEach((joint, k) => setJoint(this.state.joints, values, joint, row[k]));
     return values;
   }
 

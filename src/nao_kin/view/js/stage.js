@@ -1,6 +1,7 @@
 // The picture: the viewer's objects, set to where the state has their nodes, and ghosts of the robot elsewhere.
 
 const GHOST_OPACITY = 0.2;
+const COLLISION_COLOUR = 0x299e85, COLLISION_OPACITY = 0.4; // as record.py has them
 
 // The viewer's path of every node; its names are our own numbers.
 function nodePaths(nodes) {
@@ -19,9 +20,24 @@ function setPose(object, pose) {
 function surfacesOf(object) {
   const found = [];
   for (const child of object.children) {
-    if (/^m\d+$/.test(child.name)) child.traverse((each) => { if (each.isMesh) found.push(each); });
+    if (!/^m\d+$/.test(child.name)) continue;
+    child.traverse((each) => { if (each.isMesh && each.name !== "collision") found.push(each); });
   }
   return found;
+}
+
+// A veil over a surface that is a collision shape as well.
+function collisionCopy(surface) {
+  const copy = surface.clone();
+  copy.name = "collision";
+  copy.material = surface.material.clone();
+  copy.material.color.set(COLLISION_COLOUR);
+  copy.material.opacity = COLLISION_OPACITY;
+  copy.material.transparent = true;
+  copy.material.polygonOffset = true; // in front of what it covers
+  copy.material.polygonOffsetFactor = copy.material.polygonOffsetUnits = -2;
+  surface.parent.add(copy);
+  return copy;
 }
 
 class Stage {
@@ -87,11 +103,10 @@ class Stage {
   }
 
   setCollisions(shown) {
-    this.objects.forEach((object) => {
-      for (const child of object.children) {
-        if (child.name === "c") child.visible = shown;
-      }
-    });
+    this.collisions ??= this.objects.flatMap((object, index) =>
+      (this.scene.nodes[index].collides ? surfacesOf(object).map(collisionCopy) : []));
+    const apart = this.objects.flatMap((object) => object.children.filter(({ name }) => name === "c"));
+    for (const object of [...apart, ...this.collisions]) object.visible = shown;
     this.viewer.set_dirty();
   }
 

@@ -10,6 +10,18 @@ function interpolated(x, at, y) {
   return y[y.length - 1];
 }
 
+// Sets a joint's motor and all joints that go with it; returns the motor.
+function setJoint(joints, values, joint, value) {
+  const { leader, multiplier, offset } = joints[joint];
+  const motor = leader < 0 ? joint : leader;
+  values[motor] = leader < 0 ? value : (value - offset) / multiplier;
+  joints.forEach((other, k) => {
+    if (other.leader === motor) values[k] = other.multiplier * values[motor] + other.offset;
+  });
+  values[joint] = value;
+  return motor;
+}
+
 class State {
   constructor(scene) {
     this.scene = scene;
@@ -70,16 +82,8 @@ class State {
     return (lower !== null && value < lower - LIMIT_TOLERANCE) || (upper !== null && value > upper + LIMIT_TOLERANCE);
   }
 
-  // Sets a joint's motor and all joints that go with it.
   drive(joint, value) {
-    const { leader, multiplier, offset } = this.joints[joint];
-    const motor = leader < 0 ? joint : leader;
-    this.values[motor] = leader < 0 ? value : (value - offset) / multiplier;
-    this.joints.forEach((other, k) => {
-      if (other.leader === motor) this.values[k] = other.multiplier * this.values[motor] + other.offset;
-    });
-    if (leader >= 0) this.values[joint] = value;
-    return motor;
+    return setJoint(this.joints, this.values, joint, value);
   }
 
   // What a person does with one joint: joints whose ranges depend on it stay within them.
