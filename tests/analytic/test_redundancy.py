@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import nao_kin as nk
 from nao_kin.analytic.redundancy import self_motion
 from nao_kin.dh import DHChain
 from nao_kin.errors import InvalidInputError, UnknownNameError
@@ -48,3 +49,16 @@ def test_joints_that_cannot_be_free_are_refused() -> None:
         self_motion(chain, np.eye(4), redundancy=chain.joint_names[2], samples=1)
     with pytest.raises(InvalidInputError, match="not locked"):
         self_motion(chain, np.eye(4), redundancy=chain.joint_names[2], locked={chain.joint_names[2]: 0.0})
+
+
+def test_solve_all_samples_a_free_joint_and_says_its_value() -> None:
+    chain, q = seven(), np.array([0.4, 0.7, -np.pi / 2, 1.1, 0.3, -0.8, 0.2])
+    free = chain.joint_names[2]
+    found = nk.solve_all(chain, chain.pose(q), redundancy=free, samples=4)
+    assert len(found.solved) > 1
+    assert min(np.abs(result.q - q).max() for result in found) < 1e-9
+    for result in found:
+        assert result.branch.endswith(f"{free} at {result.q[2]:.6g}")
+        assert np.abs(chain.pose(result.q).homogeneous - chain.pose(q).homogeneous).max() < 1e-8
+    with pytest.raises(InvalidInputError, match="samples"):
+        nk.solve_all(chain, chain.pose(q), redundancy=free, samples=1)

@@ -185,7 +185,7 @@ def test_a_run_of_a_solver_shows_its_iterates_and_errors(shown: Show) -> None:
     result = nk.solve(arm, arm.pose([3.5, 2.5, 1.5, 0.4, 0.5, 0.6]), trace=True)
     assert result.trace is not None
     page = shown(result).page
-    assert drawn(page) > 0.01
+    assert drawn(page) > 0.005  # a thin arm, beside the path of its tip
     assert page.locator("#curves .curve").count() == 2
     assert page.get_by_text("The target is reached").is_visible()
     for k in (0, 3, len(result.trace.q) - 1):

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Final
 
 from nao_kin.analytic import (
+    five_r,
     hexapod,
     hexapod_kernel,
     leg_kernel,
@@ -134,6 +135,18 @@ FORMS: Final = (
         recognise=six_r_general.recognise,
         solve=six_r_general.solve,
         solve_many=six_r_general.solve_many,
+    ),
+    ClosedForm(
+        name="five_r",
+        title="any arm of five turning joints, as six with an imagined one; slow",
+        source="Raghavan and Roth 1990; the imagined joint in nao_kin.analytic.five_r",
+        joints=5,
+        requests={"pose": Request(five_r.BRANCHES)},
+        labels=six_r_general.LABELS,
+        singularities=six_r_general.SINGULARITIES,
+        recognise=five_r.recognise,
+        solve=five_r.solve,
+        solve_many=five_r.solve_many,
     ),
 )
 """In the order in which they are tried."""

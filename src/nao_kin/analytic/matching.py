@@ -168,6 +168,7 @@ def _refusal(chain: Chain, kind: GoalKind, values: Mapping[int, Floats]) -> Inva
             offers = ", ".join(_offer(k, request, [names[c] for c in columns]) for k, request in form.requests.items())
             locked = ", ".join(names[column] for column in values) or "nothing"
             got = f"{'an' if kind == 'orientation' else 'a'} {kind} with {locked} locked"
+            got += f" ({'; '.join(reasons)})" if reasons else ""
             return InvalidInputError("target", f"what {form.name} solves: {offers}", got)
     counts = sorted({form.joints for form in FORMS})
     reasons = reasons or [f"{len(names)} joints where the closed forms have {', '.join(map(str, counts))}"]

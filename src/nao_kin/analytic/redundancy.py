@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
+from nao_kin.analytic.free_joint import values_of
 from nao_kin.analytic.solutions import Solutions, solve_all
-from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -55,20 +53,9 @@ def self_motion(
             a joint both free and locked.
         UnknownNameError: No such joint; carries near matches.
     """
-    if redundancy not in chain.joint_names:
-        raise UnknownNameError("joint", redundancy, chain.joint_names, chain.name)
-    if samples < 2:
-        raise InvalidInputError("samples", "an integer ≥ 2", repr(samples))
-    if locked and redundancy in locked:
-        raise InvalidInputError("redundancy", "a joint that is not locked", redundancy)
-    k = chain.joint_names.index(redundancy)
-    low, high = chain.lower[k], chain.upper[k]
-    limited = bool(np.isfinite(low) and np.isfinite(high))
-    if not limited and chain.joints[k].kind == "prismatic":
-        raise InvalidInputError("redundancy", "a joint with limits, or one that turns", redundancy)
-    values = np.linspace(low, high, samples) if limited else np.linspace(-np.pi, np.pi, samples, endpoint=False)
     held = dict(locked or {})
+    values = values_of(chain, redundancy, samples, held)
     return tuple(
         SelfMotionSample(value, solve_all(chain, target, locked=held | {redundancy: value}, tolerances=tolerances))
-        for value in values.tolist()
+        for value in values
     )

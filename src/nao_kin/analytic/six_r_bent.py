@@ -30,6 +30,7 @@ from nao_kin.analytic.six_r_kernel import (
     UPPER,
     axis,
     goal_of,
+    is_rough,
     moved,
     point,
     refined,
@@ -323,6 +324,7 @@ def _settled(
             return count
     if count == BRANCHES:
         return count
+    rough = ROUGH if is_rough(W) else 0
     label = (0 if math.sin(q[2] + arm[LOWER + 1] - arm[UPPER + 1]) >= 0.0 else 1) + (0 if math.sin(q[4]) >= 0.0 else 2)
     side = loop[2] if loop[1] < 0.0 else math.sin(phi)
-    return store(arm, rows, count, (q[0], q[1], q[2], q[3], q[4], q[5]), label + (0 if side >= 0.0 else 4), ROUGH)
+    return store(arm, rows, count, (q[0], q[1], q[2], q[3], q[4], q[5]), label + (0 if side >= 0.0 else 4), rough)

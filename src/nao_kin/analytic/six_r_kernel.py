@@ -48,6 +48,7 @@ __all__ = [
     "axis",
     "goal_of",
     "in_plane",
+    "is_rough",
     "point",
     "refined",
     "roots",
@@ -72,6 +73,7 @@ _NEAR: Final = 1e-6  # relative: from here Newton's steps do
 CERTIFIED: Final = 1e-10  # largest miss of a solution [m, rad]
 _ENOUGH: Final = 2e-16  # relative: rounding has the rest
 _NEARLY: Final = 1e-4  # a solution whose joints' sines multiply to less is polished even if the arm is exact
+_INVERSE_PIVOT: Final = 1e6  # [1/m²]: of the square of a singular value, which a rounding is to be small against
 _MERGED: Final = 1e-7  # sine of half the angle between two roots that are one
 
 
@@ -240,6 +242,7 @@ def settle(arm: Floats, G: Placed, q: Floats, W: Floats) -> float:
     """
     J, A, r, y, step = W[0], W[1], W[2, 0], W[2, 1], W[2, 2]
     best, last = W[2, 3], math.inf
+    A[0, 0] = math.inf  # for `is_rough`, where no step is taken
     for _ in range(_STEPS):
         miss = _miss(G, reach(arm, q, J), r)
         if not miss < last:
@@ -258,6 +261,15 @@ def settle(arm: Floats, G: Placed, q: Floats, W: Floats) -> float:
         for k in range(6):
             q[k] += step[k]
     return last
+
+
+@leaf_jit
+def is_rough(W: Floats) -> bool:
+    """Whether roundings show in the joints that `settle` left: a pivot of J Jᵀ says that a singularity is near."""
+    largest = 0.0
+    for k in range(6):
+        largest = max(largest, W[1, k, k])
+    return not largest < _INVERSE_PIVOT
 
 
 @leaf_jit

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
 from nao_kin.analytic.certifying import MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
+from nao_kin.analytic.free_joint import values_of
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.chain import configuration, value_unit
 from nao_kin.errors import InvalidInputError
@@ -84,6 +86,8 @@ def solve_all(
     target: TargetLike,
     *,
     locked: Mapping[str, float] | None = None,
+    redundancy: str | None = None,
+    samples: int = 64,
     tolerances: Tolerances = TOLERANCES,
     windings: bool = False,
 ) -> Solutions:
@@ -96,6 +100,9 @@ def solve_all(
         chain: The chain.
         target: T_base_target as a `pin.SE3` or (4, 4) matrix, a position (3,) [m], or a `Target`.
         locked: Values of joints by name [rad or m], for what the target leaves free or a chain has too many of.
+        redundancy: A joint that the target leaves free, as an arm of seven has one: its self-motion is sampled, and
+            each branch says the joint's value.
+        samples: How many values of that joint, over its range or one turn.
         tolerances: When the target counts as reached, and how far a joint may be outside its range.
         windings: Return every whole turn of a solution that its limits allow, and not only the middle one.
 
@@ -105,10 +112,20 @@ def solve_all(
         target: ``reason`` then says by how much the nearest branch misses.
 
     Raises:
-        InvalidInputError: Not a target, or no closed form fits; the message says what was measured and what to do.
-        UnknownNameError: A locked joint is not one of the chain; carries near matches.
+        InvalidInputError: Not a target, or no closed form fits; the message says what was measured and what to do. Or
+            fewer than two samples, or a free joint that slides without limits or is locked.
+        UnknownNameError: A locked or free joint is not one of the chain; carries near matches.
     """
     wanted = Target.of(target)
+    if redundancy is not None:
+        held = dict(locked or {})
+        swept = list[IKResult]()
+        for value in values_of(chain, redundancy, samples, held):
+            found_here = solve_all(
+                chain, wanted, locked=held | {redundancy: value}, tolerances=tolerances, windings=windings
+            )
+            swept += (_labelled(result, f"{redundancy} at {value:.6g}") for result in found_here)
+        return _swept(swept, redundancy)
     problem = Problem(chain, wanted, tolerances)
     found = matched(chain, wanted, locked)
     if len(found.given) != 1:
@@ -117,6 +134,20 @@ def solve_all(
     if not solutions:
         solutions.reason = _miss(list(judged(found, problem, math.inf)))
     return solutions
+
+
+def _labelled(result: IKResult, words: str) -> IKResult:
+    """The result with further words in its branch."""
+    branch = ", ".join(part for part in (result.branch, words) if part)
+    return replace(result, run=replace(result.run, branch=branch))
+
+
+def _swept(results: list[IKResult], redundancy: str) -> Solutions:
+    """The solutions of all samples of a free joint, those within the limits first."""
+    results.sort(key=lambda result: not result.solved)
+    if not results:
+        return Solutions((), f"No sample of {redundancy} has a solution.")
+    return Solutions(results, "" if results[0].solved else "Every solution is outside the limits.")
 
 
 def sorted_out(results: Iterable[IKResult]) -> Solutions:

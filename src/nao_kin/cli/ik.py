@@ -33,6 +33,8 @@ def ik(
     seed: Annotated[int, typer.Option(help="Seed of the stored starts.")] = 0,
     all: Annotated[bool, typer.Option("--all", help="Every solution, by closed form.")] = False,
     lock: Annotated[list[str] | None, typer.Option(help="With --all, NAME=VALUE, repeated: a joint's value.")] = None,
+    redundancy: Annotated[str | None, typer.Option(help="With --all, the joint of which to sample values.")] = None,
+    samples: Annotated[int, typer.Option(min=2, help="How many values of --redundancy.")] = 64,
     html: Annotated[str | None, typer.Option(help="Write a page: the solution and the way to it, or all.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:
@@ -45,10 +47,11 @@ def ik(
     if all:
         if method != "lm":
             raise typer.BadParameter("--method is for one solution; leave out --all.")
-        _every_solution(path, target, parse_posture(lock or [], deg, model), html, format)
+        options = {"locked": parse_posture(lock or [], deg, model), "redundancy": redundancy, "samples": samples}
+        _every_solution(path, target, options, html, format)
         return
-    if lock:
-        raise typer.BadParameter("--lock goes with --all.")
+    if lock or redundancy:
+        raise typer.BadParameter("--lock and --redundancy go with --all.")
     result = solve(path, target, method=method, seed=seed, trace=html is not None)
     if format is OutputFormat.json:
         report_json(result_data(result))
@@ -64,11 +67,11 @@ def ik(
 
 
 def _every_solution(
-    path: UrdfChain, target: TargetLike, locked: dict[str, float], html: str | None, format: OutputFormat
+    path: UrdfChain, target: TargetLike, options: dict[str, Any], html: str | None, format: OutputFormat
 ) -> None:
     from nao_kin.analytic.solutions import solve_all
 
-    solutions = solve_all(path, target, locked=locked)
+    solutions = solve_all(path, target, **options)
     if format is OutputFormat.json:
         data = [result_data(result) | {"branch": result.branch} for result in solutions]
         report_json({"chain": path.name, "reason": solutions.reason, "solutions": data})

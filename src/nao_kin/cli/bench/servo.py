@@ -19,6 +19,7 @@ __all__ = ["servo"]
 _START: Final = (0.3, 3.0, 2.0, 0.5, -0.5, 0.2)  # [rad]
 _WAY: Final = (1.0, 0.6, -0.8, 1.2, 0.9, -1.0)  # [rad]
 _ACCELERATION: Final = 1.0  # [rad/s²]
+_PACE: Final = 0.7  # of the greatest speeds, so that a servo that lags can catch up
 _PERIOD: Final = 0.01  # [s]
 _ENOUGH: Final = 5.0
 _INTEGRAL_TIMES: Final = (0.2, 0.5, 1.0)  # [s]
@@ -38,7 +39,15 @@ def servo(
 
     machine, motors = Machine(), Motors.of(load("jaco2"))
     start, way = np.array(_START), np.array(_WAY)
-    reference = joint_motion(motors, start, start + way, acceleration=_ACCELERATION, straight=True, sampling=_PERIOD)
+    reference = joint_motion(
+        motors,
+        start,
+        start + way,
+        acceleration=_ACCELERATION,
+        max_velocity=_PACE * motors.max_velocity,
+        straight=True,
+        sampling=_PERIOD,
+    )
     cases: list[tuple[str, Plant, bool]] = [
         ("first order, P", VelocityServos(motors), False),
         ("first order, PI", VelocityServos(motors), True),
@@ -68,7 +77,8 @@ _HEADINGS = (
 _NOTES = (
     "Gains: of a fixed ladder the one with the least RMS error of the run without feed-forward, among those whose "
     "answer to a small step overshoots by at most 1 % (P) or 10 % (PI). Rigid bodies: forward dynamics with gravity, "
-    "effort limits and drives that know gravity.",
+    f"effort limits and drives that know gravity. The motion takes at most {100 * _PACE:g} % of the "
+    "greatest speeds: at all of them no command is left to catch up with, and feed-forward is worth less.",
 )
 
 

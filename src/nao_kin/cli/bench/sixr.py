@@ -23,7 +23,6 @@ __all__ = ["sixr"]
 
 _SAME = 1e-9  # [rad]: joints this near are recovered
 _REGULAR = 1e-6  # least singular value from which on a pose says what its joints are to 1e-9
-_ROUNDING = 2e-15  # [m]: of the pose itself, which moves joints by this over the least singular value
 _RESIDUAL = 1e-10  # [m, rad]
 _MISSING = 1e-5  # [rad]
 _ARMS = ("ur3", "ur5", "ur10", "z1", "kinova", "jaco2")
@@ -48,7 +47,9 @@ def sixr(
     starts: Annotated[int, typer.Option(min=1, help="Newton's starts for each.")] = 128,
     any_targets: Annotated[int, typer.Option(min=1, help="Random poses, reachable or not, for NaN.")] = 100_000,
     geometries: Annotated[int, typer.Option(min=1, help="Random arms for the general method.")] = 200,
-    peers: Annotated[bool, typer.Option("--peers", help="Time eaik and ssik beside it; ssik takes minutes.")] = False,
+    peers: Annotated[
+        bool, typer.Option("--peers", help="Time eaik, ik-geo and ssik beside it; ssik takes minutes.")
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers.")] = 9,
     goals: GoalsOption = True,
     format: FormatOption = OutputFormat.text,
@@ -56,6 +57,7 @@ def sixr(
     """Six-joint arms: recovered joints, residuals, missing branches, singular poses, any arm at all, and speed."""
     import numpy as np
 
+    from nao_kin.cli.bench.sixr_bent import dense_and_singular
     from nao_kin.cli.bench.sixr_rivals import rivals
 
     machine, rng = Machine(), np.random.default_rng(seed)
@@ -63,12 +65,15 @@ def sixr(
     rows = [_row(arm, targets, newton, starts, any_targets, rng) for arm in progress(arms, "arms", len(arms))]
     hard = [_singular(arm, max(100, targets // 10), rng) for arm in arms if arm.name in ("ur3", "ur5", "ur10")]
     general = _general(geometries, rng)
+    jaco2 = next(arm for arm in arms if arm.name == "jaco2")
+    bent, demanded = dense_and_singular(jaco2.chain, jaco2.found, targets, rng)
     sheets = [
         Sheet("arms", f"{targets} poses of random joints; mirrored: from tip to base", _HEADINGS, rows),
         Sheet("singular", "exactly stretched elbows and aligned wrists", _HARD_HEADINGS, hard),
+        bent,
         Sheet("general", "random arms without structure, one pose each", _GENERAL_HEADINGS, [general]),
     ]
-    bounds = [*_bounds(rows), *_general_bounds(general)]
+    bounds = [*_bounds(rows), *_general_bounds(general), *demanded]
     bounds.append(Goal("singular poses without solution", sum(row["lost"] for row in hard), 0.0, at_least=False))
     notes = list(_NOTES)
     if peers:
@@ -104,7 +109,7 @@ _GENERAL_HEADINGS = (
 )
 _NOTES = (
     f"Recovered: poses whose joints are among the solutions to {_SAME:g} rad, of those with a least singular value "
-    f"above {_REGULAR:g}; where the rounding of the pose moves the joints by more, to {_ROUNDING:g} over that value. "
+    f"above {_REGULAR:g}. "
     "Missing: solutions that Newton found and the closed form did not. NaN: of random poses, reachable or not. "
     "µs: a pose with all its branches on one thread, before judging.",
 )
@@ -148,7 +153,7 @@ def _row(
     found = _solved(arm.found, goals)
     values = least_singular_value("pose", goals, arm.chain, Q, np.ones(6, dtype=np.bool_))
     regular = values > _REGULAR
-    recovered = int((regular & (_apart(found, Q) <= np.maximum(_SAME, _ROUNDING / values))).sum())
+    recovered = int((regular & (_apart(found, Q) <= _SAME)).sum())
     with one_thread():
         cost = min(seconds(lambda: _solved(arm.found, goals)) for _ in range(3)) / targets
     return {

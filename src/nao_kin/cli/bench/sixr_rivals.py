@@ -1,10 +1,10 @@
-"""Closed forms of six-joint arms beside those of eaik and ssik, in turns in one run and on one thread."""
+"""Closed forms of six-joint arms beside those of eaik, ik-geo and ssik, in turns in one run and on one thread."""
 
 from __future__ import annotations
 
 import importlib
 import importlib.util
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -39,12 +39,14 @@ _HEADINGS = (
 def rivals(chains: Mapping[str, UrdfChain], rng: np.random.Generator) -> tuple[Sheet, list[Goal], list[str]]:
     """The sheet, what is demanded of it, and lines about packages that are left out."""
     rows, goals, left_out = list[dict[str, Any]](), list[Goal](), list[str]()
-    for arm, peer, setup, bound in (("ur5", "eaik", _eaik, _OVER_EAIK), ("jaco2", "ssik", _ssik, _OVER_SSIK)):
-        if importlib.util.find_spec(peer) is None:
+    for arm, peer, setup, bound in _PEERS:
+        if importlib.util.find_spec(peer.replace("-", "_")) is None:
             left_out.append(f"Without {peer}: to have it beside, pip install {peer}.")
             continue
         row = _row(chains[arm], setup, rng) | {"arm": arm, "peer": peer}
         rows.append(row)
+        if bound is None:
+            continue
         for how in ("kernel", "judged"):
             goals.append(Goal(f"{arm}, times faster than {peer}, {how}", row[f"{how}_ratio"], bound))
     return Sheet("peers", "time a pose with all branches, one thread, batches", _HEADINGS, rows), goals, left_out
@@ -84,6 +86,19 @@ def _eaik(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
     return lambda: robot.IK_batched(wanted, 1), len(wanted)
 
 
+def _ik_geo(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
+    """One call a pose, as it has no batched one; it takes rotations column by column and no tool rotation."""
+    H, P, R_last_tip = product_of_exponentials(chain)
+    robot = importlib.import_module("ik_geo").Robot.three_parallel_two_intersecting(H.tolist(), P.tolist())
+    wanted = [((R_last_tip @ T[:3, :3].T).tolist(), T[:3, 3].tolist()) for T in poses]
+
+    def call() -> None:
+        for columns, place in wanted:
+            robot.get_ik(columns, place)
+
+    return call, len(wanted)
+
+
 def _ssik(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
     """The arm from its file, derived anew, which takes it a minute; it has no batched call."""
     manipulator = importlib.import_module("ssik").Manipulator
@@ -95,3 +110,10 @@ def _ssik(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
             arm.solve(T, respect_limits=False, enumerate_windings=False)
 
     return call, _FEW
+
+
+_PEERS: Final = (
+    ("ur5", "eaik", _eaik, _OVER_EAIK),
+    ("ur5", "ik-geo", _ik_geo, None),
+    ("jaco2", "ssik", _ssik, _OVER_SSIK),
+)

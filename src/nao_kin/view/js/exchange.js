@@ -22,6 +22,7 @@ class Exchange {
   }
 
   reset() {
+    this.state.body = identity();
     this.state.assume(this.state.first, "reset");
   }
 
