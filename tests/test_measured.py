@@ -52,6 +52,7 @@ SOURCES: dict[tuple[str, str], Callable[[], str]] = {
     ("many-solutions.md", "0.5 rad"): lambda: "0.5 rad",  # the argument beside it
     ("notation.md", "45.11 mm"): lambda: f"{below_ankle('l_sole'):.2f} mm",
     ("notation.md", "45.19 mm"): lambda: f"{below_ankle('LLeg'):.2f} mm",
+    ("streaming.md", "12 ms"): lambda: f"{1e3 * module('motion.guard').NAO_PERIOD:g} ms",
 }
 
 

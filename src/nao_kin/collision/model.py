@@ -118,7 +118,7 @@ class CollisionModel:
         return self._owners(self.pairs[pair])
 
     def measure(self, q: Floats, pairs: Sequence[int] | None = None) -> Floats:
-        """Signed distances [m] of watched pairs at motor values (n,) that are not checked; all pairs by default.
+        """Signed distances [m] (k,) of watched pairs, all by default, at motor values q (n,) that are not checked.
 
         The fast way in for loops; `distances` says what is near what.
         """

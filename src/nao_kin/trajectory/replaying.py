@@ -28,7 +28,7 @@ class Replay:
 
     Attributes:
         trajectory: The motion, its columns in the chain's order, with the chain's own limits.
-        tips: T_base_tip at every sample (N, 4, 4); read-only.
+        tips: T_base_tip at every sample (N, 4, 4) [m]; read-only.
         outside: Of each joint that leaves its own or its coupled range, the sample where it is farthest outside, and
             how; the first sample to do so comes first.
         demand: Speeds and accelerations beside their limits.
@@ -82,6 +82,9 @@ def replay(chain: Chain, trajectory: Trajectory, *, max_acceleration: ArrayLike 
         chain: The chain.
         trajectory: The motion; its joints are found by their names, in any order.
         max_acceleration: Greatest joint accelerations, (n,) or one for all [rad/s² or m/s²]; none unless given.
+
+    Returns:
+        Where the tip goes, what is outside its limits, and what it asks of the joints.
 
     Raises:
         UnknownNameError: The chain has a joint that the trajectory has not, or the other way round.
