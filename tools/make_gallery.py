@@ -52,8 +52,7 @@ GALLERY: Final = (
     Picture(
         "branches",
         "Every posture of a JACO2 for one pose of its hand, one solid, the others as ghosts",
-        "nao-kin ik jaco2 --deg --posture joint_1=60 --posture joint_2=150 --posture joint_3=100 "
-        "--posture joint_4=40 --posture joint_5=-50 --posture joint_6=20 --all --html PAGE",
+        "nao-kin ik jaco2 --posture joint_2=2.6 --posture joint_3=1.7 --posture joint_5=-0.9 --all --html PAGE",
     ),
     Picture(
         "overlay",
