@@ -98,7 +98,7 @@ def _families(chain: UrdfChain, count: int, rng: np.random.Generator) -> Iterato
 
 def _singular(chain: UrdfChain, joint: int, count: int, rng: np.random.Generator) -> Floats:
     """Joints (count, 6) at which the determinant of the Jacobian changes its sign as one joint turns."""
-    made = list[Floats]()
+    made: list[Floats] = []
     while sum(map(len, made)) < count:
         Q = rng.uniform(-np.pi, np.pi, (1000, 6))
         low = Q[:, joint].copy()
