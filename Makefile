@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint urdf clean
+.PHONY: demo test test-wheel lint docs urdf clean
 
 demo: $(VENV)/.installed
 	$(BIN)/nao-kin demo
@@ -11,11 +11,23 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-dev lint
 	$(BIN)/python -m pytest -n auto
 
+# The same tests on what a user installs: the wheel, in an environment of its own, away from src.
+test-wheel: $(VENV)/.installed-dev
+	rm -rf dist .venv-wheel
+	$(BIN)/python -m build --quiet --outdir dist .
+	$(PYTHON) -m venv .venv-wheel
+	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[dev]"
+	.venv-wheel/bin/python -m pytest -n auto
+
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+
+# Warnings, and references that lead nowhere, are errors.
+docs: $(VENV)/.installed-dev
+	$(BIN)/python -m sphinx -W --keep-going -n -q -E -b html docs docs/_build/html
 
 # The files in urdf/ come from the tables in tools/urdf_tables/.
 urdf: $(VENV)/.installed-dev
@@ -33,4 +45,4 @@ $(VENV)/.installed-dev: $(VENV)/.installed pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) .venv-wheel dist demo docs/_build docs/reference

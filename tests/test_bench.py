@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-import typer
 from typer.testing import CliRunner
 
 import nao_kin as nk
 from nao_kin.cli.app import application
 from nao_kin.cli.bench import peers as peers_module
-from nao_kin.cli.bench.arms import main_arm, many_chains
-from nao_kin.cli.bench.contest import Contender, Task, contest
-from nao_kin.cli.bench.edge_targets import bad_targets, farthest, near_full_reach
-from nao_kin.cli.bench.measuring import in_turns, one_thread
-from nao_kin.cli.bench.peers import Peer, Unsuited, installed_peers
-from nao_kin.cli.bench.referee import NEAR, Referee
-from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
-from nao_kin.cli.output import OutputFormat
+from nao_kin.cli.bench.arms import many_chains
+from nao_kin.cli.bench.contest import Contender, Task
+from nao_kin.cli.bench.peers import Peer, Unsuited
+from tests.conftest import needs
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +25,12 @@ TIPS = ("tips", "--targets", "6", "--samples", "2000")
 EDGES = ("edges", "--targets", "10", "--samples", "5000")
 METHODS = ("methods", "--targets", "12")
 PRACTICUM = ("practicum", "--targets", "10")
+TRAJECTORY = ("trajectory", "--cases", "200", "--targets", "10")
 CLOSED = ("closed", "--targets", "20", "--newton", "2", "--starts", "12", "--rounds", "1")
+GAIT = ("gait", "--paths", "1", "--duration", "1.5", "--no-speeds")
+GUARD = ("guard", "--motions", "1")
+LOOP = ("loop", "--seconds", "0.4", "--stall", "0.4")
+SERVO = ("servo", "--no-dynamics")
 FK = ("fk", "--configurations", "200", "--rounds", "1", "--samples", "5")
 
 
@@ -81,12 +80,36 @@ def fakes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers_module, "PEERS", {peer.name: peer for peer in made})
 
 
-@pytest.mark.parametrize("arguments", [FK, IK, EDGES, METHODS, PRACTICUM, CLOSED, TIPS])
+@pytest.mark.parametrize(
+    "arguments", [FK, IK, EDGES, METHODS, PRACTICUM, TRAJECTORY, CLOSED, TIPS, GAIT, GUARD, LOOP, SERVO]
+)
 def test_text_fits_a_terminal(arguments: tuple[str, ...]) -> None:
     text = bench(*arguments)
     assert max(map(len, text.splitlines())) <= 80
     assert "should be" in text
     assert "numpy" in text
+
+
+def test_the_guard_stops_what_collides_and_nothing_else() -> None:
+    data = data_of(*GUARD)
+    assert missed(data) == []
+    assert {(row["robot"], row["kind"]) for row in data["rows"]} >= {("nao", "colliding"), ("jaco2", "clear")}
+    assert all(row["path"] < 0.0 for row in data["rows"] if row["kind"] == "colliding")
+    assert all(row["path"] >= 10.0 for row in data["rows"] if row["kind"] == "clear")
+
+
+def test_the_loop_counts_deadlines_and_comes_to_rest() -> None:
+    data = data_of(*LOOP)
+    assert missed(data, "in time") == []
+    commanding, silent = data["rows"]
+    assert commanding["met"] + commanding["missed"] == commanding["cycles"]
+    assert (silent["met"], silent["missed"]) == (0, silent["cycles"])
+
+
+def test_feed_forward_is_worth_what_is_promised() -> None:
+    data = data_of(*SERVO)
+    assert missed(data) == []
+    assert all(row["cut"] == 0 for row in data["rows"])
 
 
 def test_fk_compares_every_bundled_robot_with_pinocchio() -> None:
@@ -148,6 +171,15 @@ def test_the_practicums_tasks_report_every_fault() -> None:
     assert sum(note.startswith(("1f,", "1g,")) for note in data["notes"]) == 4
 
 
+def test_trajectory_agrees_with_ruckig_and_names_what_ends_a_line() -> None:
+    needs("ruckig")
+    data = data_of(*TRAJECTORY)
+    assert [goal["what"] for goal in data["goals"] if not goal["met"]] == []
+    assert {row["line"]: row["completed"] for row in data["lines"]}["out of reach"] is False
+    assert all(row["cause"] != "NONE" for row in data["lines"] if not row["completed"])
+    assert len(data["task_2b"]) == 2
+
+
 def test_closed_recovers_everything_and_prices_the_folded_arm() -> None:
     data = data_of(*CLOSED)
     forms = {row["form"] for row in data["closed"]}
@@ -190,74 +222,24 @@ def test_edges_tells_a_claim_from_an_answer(fakes: None) -> None:
     assert {row["solver"] for row in data["singular"]} == {"nao_kin", "liar", "honest"}
 
 
+def test_pages_are_plain_data() -> None:
+    data = data_of("page", "--rounds", "1")
+    assert [row["robot"] for row in data["rows"]] == ["nao", "jaco2", "phantomx"]
+    assert all(row["ratio"] > 0 and 0.9 < row["mb"] < 5 for row in data["rows"])
+
+
 def test_startup_is_plain_data() -> None:
     data = data_of("startup", "--rounds", "1")
     assert [row["what"] for row in data["rows"]][-1] == "first solve, warm cache"
     assert all(row["ratio"] == pytest.approx(row["ms"] / row["against_ms"]) for row in data["rows"])
 
 
-def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:
-    sheet = Sheet("rows", "title", (Heading("a", "a"), Heading("b", "b", ".1f")), [{"a": "x", "b": None}])
-    goals = [Goal("speed", 2.0, 3.0), Goal("error", 0.0, 0.0, at_least=False)]
-    assert [goal.met for goal in goals] == [False, True]
-    assert not Goal("nothing", math.nan, 0.0).met
-    conclude(Machine(), [sheet], goals, ["a note"], OutputFormat.text, enforce=False)
-    assert "NO" in capsys.readouterr().out
-    with pytest.raises(typer.Exit) as left:
-        conclude(Machine(), [sheet], goals, [], OutputFormat.json, enforce=True)
-    assert left.value.exit_code == 1
-    assert json.loads(capsys.readouterr().out)["rows"] == [{"a": "x", "b": None}]
-
-
-def test_a_busy_machine_is_mentioned() -> None:
-    assert "busy" in str(Machine(cores=2, load=1.5))
-    assert "busy" not in str(Machine(cores=2, load=0.5))
-    assert "load" not in str(Machine(load=None))
-
-
-def test_the_referee_is_strict() -> None:
-    head = nk.load("nao").chain("head")
-    referee, inside = Referee(head), np.array([0.2, 0.1])
-    T = referee.pose(inside)
-    assert np.abs(T - head.pose(inside).homogeneous).max() < 1e-12
-    assert referee.accepts(inside, T)
-    assert not referee.accepts(None, T)
-    assert not referee.accepts(np.array([0.2, np.nan]), T)
-    assert not referee.accepts(np.array([0.2]), T)
-    beside = inside + np.array([0.0, 5e-6])
-    assert not referee.accepts(beside, T)
-    assert referee.accepts(beside, T, within=NEAR)
-    far_out = np.array([3.0, 0.0])
-    assert not referee.accepts(far_out, referee.pose(far_out))
-    coupled = np.array([2.0, 0.5])  # each joint within its own range, the pitch outside what the yaw leaves it
-    assert not referee.accepts(coupled, referee.pose(coupled))
-
-
-def test_the_referee_knows_continuous_and_coupled_joints_and_paths_up_the_tree(rng: np.random.Generator) -> None:
-    robot = nk.load("nao")
-    for chain in (nk.load("jaco2").chain("arm"), robot.chain("l_sole", "r_sole"), robot.chain("right_leg")):
-        referee, q = Referee(chain), rng.uniform(-0.3, 0.3, len(chain.joints))
-        assert referee.pose(q) == pytest.approx(chain.pose(q).homogeneous, abs=1e-12)
-        assert referee.jacobian(q) == pytest.approx(chain.jacobian(q), abs=1e-12)
-
-
-def test_targets_of_the_edges_are_what_they_claim(rng: np.random.Generator) -> None:
-    arm = nk.load("jaco2").chain("arm")
-    q_far, reach = farthest(arm, 1000, rng)
-    assert np.linalg.norm(arm.pose(q_far).translation) == pytest.approx(reach)
-    poses = near_full_reach(arm, q_far, 0.99 * reach, 5, rng)
-    assert np.linalg.norm(poses[:, :3, 3], axis=1) == pytest.approx(0.99 * reach, abs=1e-12)
-    assert len(bad_targets(arm)) == 7
-
-
-def test_without_the_extra_the_jaco2_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("nao_kin.known.example_robot_data_share", lambda: None)
-    arm, notes = main_arm()
-    assert arm.robot.name == "jaco2"
-    assert "Measured on jaco2 instead" in notes[0]
-    chains, missing = many_chains()
-    assert {chain.robot.name for chain, _ in chains} == {"jaco2", "nao_v50_h25", "phantomx"}
-    assert len(missing) == 3
+def test_gait_finds_feet_where_they_stood() -> None:
+    data = data_of(*GAIT)
+    assert missed(data) == []
+    assert len(data["walks"]) == 12
+    assert all(0.0 < row["slip"] < 1e-9 for row in data["walks"])
+    assert {row["give"] for row in data["torsos"]} == {"feet", "yaw"}
 
 
 def test_planted_errors_are_explained() -> None:
@@ -265,42 +247,3 @@ def test_planted_errors_are_explained() -> None:
     assert missed(data, "slowest") == []
     assert sum(row["tables"] for row in data["one_error"]) == 10
     assert sum(row["tables"] for row in data["two_errors"]) == 6
-
-
-def test_times_are_taken_in_turns() -> None:
-    called: list[str] = []
-    jobs = {"a": lambda: called.append("a"), "b": lambda: called.append("b")}
-    times = in_turns(jobs, range(2), {"b": 2})
-    assert called == ["a", "b", "b"] * 2
-    assert [len(times[name]) for name in "ab"] == [2, 4]
-
-
-def test_one_thread_is_given_back() -> None:
-    import numba
-
-    before = numba.get_num_threads()
-    with one_thread():
-        assert numba.get_num_threads() == 1
-    assert numba.get_num_threads() == before
-
-
-def test_every_contender_gets_every_target() -> None:
-    arm = nk.load("jaco2").chain("arm")
-    task = Task.reachable(arm, 60, 3)
-    asked: list[bytes] = []
-    solver = Contender("echo", lambda T: asked.append(T.tobytes()), lambda _: None)
-    (score,) = contest(task, [solver], 2, "counting")
-    assert score.times.shape == (2, 60)
-    assert (score.claimed, score.reached, score.near) == (0, 0, 0)
-    assert set(asked) == {T.tobytes() for T in task.targets}
-
-
-@pytest.mark.parametrize("name", tuple(peers_module.PEERS))
-def test_installed_peers_solve_what_they_are_given(name: str) -> None:
-    arm, _ = main_arm()
-    task = Task.reachable(arm, 20, 5)
-    found, left_out = installed_peers(task, [name])
-    if not found:
-        pytest.skip(left_out[0])
-    (score,) = contest(task, found, 1, name)
-    assert score.near >= 10  # a solver without restarts finds two thirds; a wrong adapter finds none

@@ -13,6 +13,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.se3 import rpy
+from nao_kin.trajectory.files import write_trajectory
 
 
 def run(*arguments: object, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -185,6 +186,36 @@ def test_check_prints_findings_and_exits_with_1(tmp_path: Path) -> None:
     assert "Two links bear the same name" in ok("explain", "duplicate-link")
 
 
+def test_pages_of_postures_and_of_a_motion(tmp_path: Path) -> None:
+    postures, motion, page = tmp_path / "postures.json", tmp_path / "motion.csv", tmp_path / "page.html"
+    postures.write_text(json.dumps({"up": {"joint_2": 3.1}, "folded": {"joint_2": 2.0}}), encoding="utf-8")
+    ok("html", "jaco2", "--output", page, "--postures", postures)
+    assert (
+        page.read_bytes()
+        == nk.export_html(
+            tmp_path / "same.html", nk.load("jaco2"), {"up": {"joint_2": 3.1}, "folded": {"joint_2": 2.0}}
+        ).read_bytes()
+    )
+    trajectory = nk.Trajectory(nk.load("jaco2").chain("arm").joints[:2], [0.0, 1.0], [[0.0, 3.0], [0.5, 2.0]], "bow")
+    write_trajectory(motion, trajectory)
+    ok("html", "jaco2", "--output", page, "--trajectory", motion)
+    assert "2 samples over 1 s" in page.read_text(encoding="utf-8")
+
+
+def test_ik_writes_a_page_of_every_solution(tmp_path: Path) -> None:
+    page = tmp_path / "branches.html"
+    target = ("--posture", "joint_2=4.71", "--posture", "joint_3=1.57", "--posture", "joint_5=3.14")
+    ok("ik", "jaco2", *target, "--all", "--html", page)
+    arm = nk.load("jaco2").chain("arm")
+    solutions = nk.solve_all(arm, arm.pose([0, 4.71, 1.57, 0, 3.14, 0]))
+    text = page.read_text(encoding="utf-8")
+    assert f"{len(solutions)} solutions of a pose target" in text
+    done = run("ik", "jaco2", "--xyz", 9, 9, 9, "--rpy", 0, 0, 0, "--all", "--html", tmp_path / "none.html")
+    assert done.returncode == 1
+    assert "none.html is not written" in done.stderr
+    assert not (tmp_path / "none.html").exists()
+
+
 def test_html_writes_a_page(tmp_path: Path) -> None:
     page = tmp_path / "nao.html"
     done = run("html", "nao", "--output", page, "--posture", "LHand=0.5")
@@ -228,7 +259,6 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
         (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all"), "position with LElbowYaw and LWristYaw locked"),
         (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--lock", "LElbow=1"), "Did you mean"),
         (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--lock", "LElbowYaw=1"), "--lock goes with --all"),
-        (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--html", "x.html"), "leave out --all"),
         (("ik", "nao:left_arm", "--xyz", 0, 0, 0, "--all", "--method", "dls"), "leave out --all"),
         (("compare", "thesis_left_arm", "nao:left_arm"), "5 joints as"),
         (("compare", "nao:left_arm"), "say what to hold"),
@@ -241,6 +271,8 @@ def test_demo_does_the_main_job(tmp_path: Path) -> None:
         (("fk", "nao:torso:" + "x" * 5000), "There is no frame"),
         (("compare", "nothing.toml", "nao:left_arm"), "nothing.toml: no such file"),
         (("html", "nao", "--output", "/"), "a file to write"),
+        (("html", "nao", "--output", "x.html", "--posture", "LHand=0.5", "--trajectory", "a.csv"), "is enough"),
+        (("html", "nao", "--output", "x.html", "--postures", "pyproject.toml"), "no JSON"),
         (("nosuch",), "No such command"),
     ],
 )

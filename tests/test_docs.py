@@ -90,6 +90,33 @@ def test_the_documented_comparisons_run(tmp_path: Path) -> None:
         assert line in printed.splitlines()
 
 
+def test_the_documented_guard_stops_where_it_says(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "motion.md").read_text(encoding="utf-8")
+    (block,), (shown,) = blocks(page, "python"), blocks(page, "text")
+    done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout == shown, done.stderr
+
+
+def test_the_documented_peer_compiles() -> None:
+    (block,) = blocks((ROOT / "docs" / "streaming.md").read_text(encoding="utf-8"), "python")
+    names: dict[str, object] = {}
+    exec(block, names)  # noqa: S102 - our own page
+    assert callable(names["nod"])
+
+
 def test_the_version_is_said_once() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["version"] == nk.__version__
+
+
+def test_contributing_pictures_the_layers() -> None:
+    """The picture leaves out small siblings, never a whole layer, and has the layers in their order."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+    (picture,) = blocks((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), "text")
+    drawn = re.findall(r"\w+", " ".join(line[:31] for line in picture.splitlines()))
+    small = {"dh_from_chain", "dh_file", "dh_row"}
+    first = [layer.split(" | ")[0].removeprefix("nao_kin.") for layer in contracts[0]["layers"]]
+    places = [drawn.index(name) for name in first if name not in small and name != "tree"]
+    assert places == sorted(places)

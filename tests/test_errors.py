@@ -11,12 +11,15 @@ from nao_kin import errors
 
 LEAVES = (
     errors.AuditError(3, "1 m", "2 m"),
+    errors.FrameError("a length of 0 bytes", fatal=True),
     errors.UnknownNameError("frame", "larm", ["LArm", "RArm"], "nao"),
     errors.InvalidInputError("q", "5 numbers", "4 numbers"),
     errors.NoPathError("l_sole", "LLeg", "nao"),
     errors.MissingExtraError("Robot 'ur5'", "robots"),
     errors.UrdfError("a.urdf", 3, "Wrong.", "Right."),
     errors.TableFileError("a.toml", None, "Wrong."),
+    errors.TrajectoryFileError("a.txt", 3, "Wrong.", column=2),
+    errors.KeyframeFileError("a.toml", 3, "Wrong."),
 )
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
-import threading
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,27 +16,10 @@ from nao_kin.chain import (
     random_configurations,
 )
 from nao_kin.errors import InvalidInputError, MissingExtraError, NoPathError, UnknownNameError, UrdfError
-from nao_kin.ik.reach import reach_shell
-from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
+from tests.conftest import BUNDLED, EXAMPLES, MIMIC, needs_examples, robot
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-MIMIC = """<robot name="m"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
-<joint name="z_lead" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
-  <limit lower="-1" upper="1" effort="1" velocity="2"/></joint>
-<joint name="m_follow" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
-  <origin xyz="1 0 0"/><limit lower="-0.5" upper="3" effort="1" velocity="2"/>
-  <mimic joint="z_lead" multiplier="-2" offset="0.5"/></joint>
-<joint name="a_follow" type="prismatic"><parent link="c"/><child link="d"/><axis xyz="1 0 0"/>
-  <limit lower="-9" upper="9" effort="1" velocity="1"/><mimic joint="m_follow" multiplier="0.1"/></joint></robot>"""
-
-
-@pytest.fixture
-def mimic(tmp_path: Path) -> nk.Robot:
-    path = tmp_path / "m.urdf"
-    path.write_text(MIMIC)
-    return nk.load(path)
 
 
 def test_every_bundled_robot_loads_with_all_its_chains() -> None:
@@ -253,126 +234,13 @@ def test_neutral_is_inside_all_limits(name: str) -> None:
         assert in_limits(model.chain(chain_name), neutral(model.chain(chain_name)), tolerance=1e-12)
 
 
-@pytest.mark.parametrize("q", [[0.0] * 4, [0.0] * 6, [0, 0, float("nan"), 0, 0], [[0.0] * 5], "abc", [0, 0, 0, 0, 1j]])
-def test_a_bad_configuration_names_the_joints_and_what_came(q: object) -> None:
-    arm = robot("nao_v50_h25").chain("left_arm")
-    for method in (arm.pose, arm.jacobian, arm.link_poses):
-        with pytest.raises(InvalidInputError, match=r"left_arm.*LShoulderPitch.*got"):
-            method(q)
+def test_reprs_say_what_it_is() -> None:
+    assert repr(robot("jaco2")) == "<Robot jaco2: 6 moving joints, 8 frames>"
+    assert "jaco2 arm" in repr(robot("jaco2").chain("arm"))
+    assert "follows LHipYawPitch" in robot("nao_v50_h25")._repr_html_()
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "0.1", None, True])
 def test_a_bad_posture_names_the_joint(value: object) -> None:
     with pytest.raises(InvalidInputError, match="LElbowRoll"):
         robot("nao_v50_h25").expand({"LElbowRoll": value})
-
-
-def test_an_unknown_jacobian_frame_is_refused() -> None:
-    with pytest.raises(InvalidInputError, match="'base' or 'tip'"):
-        robot("jaco2").chain("arm").jacobian(np.zeros(6), frame="world")
-
-
-def test_batches_are_the_single_calls_stacked(rng: np.random.Generator) -> None:
-    chain = robot("nao_v50_h25").chain("l_sole", "r_gripper")
-    Q = random_configurations(chain, 7, rng)
-    np.testing.assert_allclose(chain.poses(Q), [chain.pose(q).homogeneous for q in Q], atol=1e-14, rtol=0)
-    np.testing.assert_allclose(chain.jacobians(Q), [chain.jacobian(q) for q in Q], atol=1e-14, rtol=0)
-    assert chain.poses(np.empty((0, 12))).shape == (0, 4, 4)
-    assert chain.jacobians(np.empty((0, 12))).shape == (0, 6, 12)
-    with pytest.raises(InvalidInputError, match=r"\(N, 12\)"):
-        chain.poses(Q[:, :3])
-
-
-def test_results_do_not_share_memory_with_pinocchio() -> None:
-    chain = robot("jaco2").chain("arm")
-    first = chain.pose(np.zeros(6))
-    before = first.homogeneous.copy()
-    chain.pose(np.ones(6))
-    np.testing.assert_array_equal(first.homogeneous, before)
-    J = chain.jacobian(np.zeros(6))
-    kept = J.copy()
-    chain.jacobian(np.ones(6))
-    np.testing.assert_array_equal(J, kept)
-    with pytest.raises(ValueError, match="read-only"):
-        chain.lower[0] = 0.0
-
-
-def test_a_chain_may_be_shared_between_threads(rng: np.random.Generator) -> None:
-    chain = robot("nao_v50_h25").chain("l_sole", "r_gripper")
-    Q = random_configurations(chain, 400, rng)
-    expected = chain.poses(Q)
-    found: list[np.ndarray] = []
-    threads = [threading.Thread(target=lambda: found.append(chain.poses(Q))) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert all(np.array_equal(poses, expected) for poses in found)
-    assert len(found) == 4
-
-
-def test_robots_and_chains_survive_pickling() -> None:
-    chain = pickle.loads(pickle.dumps(robot("nao_v50_h25").chain("left_arm")))  # noqa: S301 - our own bytes
-    np.testing.assert_array_equal(
-        chain.pose(np.full(5, 0.1)).homogeneous,
-        robot("nao_v50_h25").chain("left_arm").pose(np.full(5, 0.1)).homogeneous,
-    )
-
-
-@pytest.mark.parametrize("name", BUNDLED)
-def test_the_tip_never_leaves_the_reach_shell(name: str, rng: np.random.Generator) -> None:
-    model = robot(name)
-    chains = [model.chain(c) for c in model.chain_frames]
-    if name.startswith("nao"):
-        chains.append(model.chain("l_sole", "r_sole"))
-    for chain in chains:
-        shell = reach_shell(chain)
-        positions = chain.poses(rng.uniform(-np.pi, np.pi, (500, len(chain.joints))))[:, :3, 3]
-        distances = np.linalg.norm(positions - shell.centre, axis=1)
-        assert distances.max() <= shell.outer * (1 + 1e-12)
-        assert distances.min() >= shell.inner * (1 - 1e-12)
-        assert max(shell.misses_by(p) for p in positions) == 0.0
-
-
-def test_coupled_joints_count_one_by_one(mimic: nk.Robot, rng: np.random.Generator) -> None:
-    chain = mimic.chain("a", "d")
-    shell = reach_shell(chain)
-    for q in random_configurations(chain, 200, rng):
-        assert shell.misses_by(chain.pose(q).translation) == 0.0
-
-
-def test_prismatic_travel_counts_as_reach(tmp_path: Path) -> None:
-    path = tmp_path / "slider.urdf"
-    path.write_text(
-        '<robot name="s"><link name="a"/><link name="b"/><joint name="x" type="prismatic"><parent link="a"/>'
-        '<child link="b"/><axis xyz="1 0 0"/><limit lower="-0.2" upper="0.7" effort="1" velocity="1"/></joint></robot>'
-    )
-    chain = nk.load(path).chain("a", "b")
-    shell = reach_shell(chain)
-    assert np.linalg.norm(chain.pose([0.7]).translation - shell.centre) <= shell.outer == pytest.approx(0.7)
-
-
-def test_an_arm_that_cannot_fold_has_a_hole_in_its_reach() -> None:
-    """Rods of 0.3 and 0.1 m leave the first 0.2 m around the shoulder free."""
-    table = nk.DHChain.from_table([(0.3, 0, 0, 0), (0.1, 0, 0, 0)], convention="standard")
-    shell = reach_shell(table)
-    assert (shell.inner, shell.outer) == (pytest.approx(0.2), pytest.approx(0.4))
-    assert shell.misses_by(np.zeros(3)) == pytest.approx(0.2)
-    assert nk.solve(table, [0.1, 0.0, 0.0]).status is nk.Status.OUT_OF_REACH
-
-
-def test_half_open_and_huge_ranges_are_sampled(rng: np.random.Generator) -> None:
-    rows = [
-        {"a": 1, "alpha": 0, "d": 0, "theta": 0} | limits
-        for limits in ({"lower": 4.0}, {"upper": -4.0}, {"upper": 1e308, "lower": -1e308})
-    ]
-    Q = random_configurations(nk.DHChain.from_table(rows, "standard"), 500, rng)
-    assert (Q[:, 0].min(), Q[:, 0].max()) == (pytest.approx(4.0, abs=0.1), pytest.approx(4.0 + 2 * np.pi, abs=0.1))
-    assert (Q[:, 1].min(), Q[:, 1].max()) == (pytest.approx(-4.0 - 2 * np.pi, abs=0.1), pytest.approx(-4.0, abs=0.1))
-    assert np.abs(Q[:, 2]).max() == pytest.approx(np.pi, abs=0.1)
-
-
-def test_reprs_say_what_it_is() -> None:
-    assert repr(robot("jaco2")) == "<Robot jaco2: 6 moving joints, 8 frames>"
-    assert "jaco2 arm" in repr(robot("jaco2").chain("arm"))
-    assert "follows LHipYawPitch" in robot("nao_v50_h25")._repr_html_()

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.checks.checker import check as check
     from nao_kin.checks.finding import Finding as Finding
     from nao_kin.checks.finding import Report as Report
+    from nao_kin.collision.model import CollisionModel as CollisionModel
     from nao_kin.crosscheck import Comparison as Comparison
     from nao_kin.crosscheck import compare as compare
     from nao_kin.dh import DHChain as DHChain
@@ -31,9 +32,8 @@ if TYPE_CHECKING:
     from nao_kin.documents.ledger import Ledger as Ledger
     from nao_kin.documents.ledger import ledger as ledger
     from nao_kin.errors import NaoKinError as NaoKinError
-    from nao_kin.ik.along import FollowResult as FollowResult
-    from nao_kin.ik.along import project_to_reach as project_to_reach
     from nao_kin.ik.batch import BatchResult as BatchResult
+    from nao_kin.ik.border import project_to_reach as project_to_reach
     from nao_kin.ik.catalogue import METHODS as METHODS
     from nao_kin.ik.loop import Budget as Budget
     from nao_kin.ik.problem import IKResult as IKResult
@@ -44,15 +44,29 @@ if TYPE_CHECKING:
     from nao_kin.known import robot_names as robot_names
     from nao_kin.robot import Robot as Robot
     from nao_kin.robot import load as load
-    from nao_kin.solving import follow as follow
     from nao_kin.solving import solve as solve
     from nao_kin.solving import solve_batch as solve_batch
     from nao_kin.tolerances import Tolerances as Tolerances
+    from nao_kin.trajectory.causes import Cause as Cause
+    from nao_kin.trajectory.files import read_trajectory as read_trajectory
+    from nao_kin.trajectory.files import write_trajectory as write_trajectory
+    from nao_kin.trajectory.following import FollowResult as FollowResult
+    from nao_kin.trajectory.following import follow as follow
+    from nao_kin.trajectory.joint_motion import joint_motion as joint_motion
+    from nao_kin.trajectory.paths import PoseLine as PoseLine
+    from nao_kin.trajectory.paths import PositionLine as PositionLine
+    from nao_kin.trajectory.paths import Screw as Screw
+    from nao_kin.trajectory.replaying import Replay as Replay
+    from nao_kin.trajectory.replaying import replay as replay
+    from nao_kin.trajectory.timing import timed as timed
     from nao_kin.trajectory.trajectory import Trajectory as Trajectory
+    from nao_kin.trajectory.trapezoid import Trapezoid as Trapezoid
     from nao_kin.tree import Tree as Tree
     from nao_kin.urdf_chain import UrdfChain as UrdfChain
     from nao_kin.view.export import export_html as export_html
     from nao_kin.view.export import show as show
+    from nao_kin.workspace.mapping import reachability as reachability
+    from nao_kin.workspace.reach_map import ReachMap as ReachMap
 
 __version__ = "0.1.0"
 
@@ -60,25 +74,33 @@ _HOME = {
     "BatchResult": "ik.batch",
     "BatchSolutions": "analytic.batch",
     "Budget": "ik.loop",
+    "Cause": "trajectory.causes",
     "Chain": "chain",
     "ChainJoint": "chain",
+    "CollisionModel": "collision.model",
     "Comparison": "crosscheck",
     "DHChain": "dh",
     "DHRow": "dh_row",
     "Finding": "checks.finding",
-    "FollowResult": "ik.along",
+    "FollowResult": "trajectory.following",
     "IKResult": "ik.problem",
     "Ledger": "documents.ledger",
     "LimitRule": "chain",
     "METHODS": "ik.catalogue",
     "NaoKinError": "errors",
+    "PoseLine": "trajectory.paths",
+    "PositionLine": "trajectory.paths",
+    "ReachMap": "workspace.reach_map",
+    "Replay": "trajectory.replaying",
     "Report": "checks.finding",
     "Robot": "robot",
+    "Screw": "trajectory.paths",
     "Solutions": "analytic.solutions",
     "Status": "ik.problem",
     "Target": "ik.target",
     "Tolerances": "tolerances",
     "Trajectory": "trajectory.trajectory",
+    "Trapezoid": "trajectory.trapezoid",
     "Tree": "tree",
     "TreeResult": "ik.tree_problem",
     "UrdfChain": "urdf_chain",
@@ -87,11 +109,15 @@ _HOME = {
     "document_chain": "documents.chains",
     "document_chain_names": "documents.chains",
     "export_html": "view.export",
-    "follow": "solving",
+    "follow": "trajectory.following",
+    "joint_motion": "trajectory.joint_motion",
     "ledger": "documents.ledger",
     "load": "robot",
     "nearest": "analytic.solutions",
-    "project_to_reach": "ik.along",
+    "project_to_reach": "ik.border",
+    "reachability": "workspace.mapping",
+    "read_trajectory": "trajectory.files",
+    "replay": "trajectory.replaying",
     "robot_names": "known",
     "show": "view.export",
     "solve": "solving",
@@ -99,7 +125,9 @@ _HOME = {
     "solve_all_batch": "analytic.batch",
     "solve_batch": "solving",
     "solve_tree": "ik.tree",
+    "timed": "trajectory.timing",
     "to_dh": "dh_from_chain",
+    "write_trajectory": "trajectory.files",
 }
 
 __all__ = list(_HOME)

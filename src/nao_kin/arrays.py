@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nao_kin.errors import InvalidInputError
 
-__all__ = ["Floats", "frozen", "matrix", "positive", "rows", "vector"]
+__all__ = ["Floats", "finite", "frozen", "matrix", "positive", "rows", "vector"]
 
 Floats = NDArray[np.float64]
 
@@ -51,16 +51,25 @@ def rows(value: ArrayLike, what: str, width: int) -> Floats:
     return _finite(array, what, array.shape, expected)
 
 
+def finite(value: object, what: str, unit: str = "") -> float:
+    """A finite number.
+
+    Raises:
+        InvalidInputError: None, or not finite; truth values are no numbers.
+    """
+    found = _number(value)
+    if not math.isfinite(found):
+        raise InvalidInputError(what, f"a finite number{f' {unit}' if unit else ''}", _short(value))
+    return found
+
+
 def positive(value: object, what: str, unit: str = "", *, endless: bool = False) -> float:
     """A number above 0, finite unless `endless`.
 
     Raises:
         InvalidInputError: None of these; truth values are no numbers.
     """
-    found = math.nan
-    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
-        with contextlib.suppress(OverflowError):  # an integer too large for a float
-            found = float(value)
+    found = _number(value)
     if not (0.0 < found < math.inf or (endless and found == math.inf)):
         expected = f"a {'' if endless else 'finite '}number > 0{f' {unit}' if unit else ''}"
         raise InvalidInputError(what, expected, _short(value))
@@ -71,6 +80,14 @@ def frozen(array: Floats) -> Floats:
     """The same array, read-only from here on."""
     array.flags.writeable = False
     return array
+
+
+def _number(value: object) -> float:
+    """The number, or NaN for what is none."""
+    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
+        with contextlib.suppress(OverflowError):  # an integer too large for a float
+            return float(value)
+    return math.nan
 
 
 def _floats(value: ArrayLike, what: str, expected: str) -> Floats:

@@ -13,7 +13,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     import pinocchio as pin
     from numpy.typing import ArrayLike
@@ -34,10 +34,14 @@ __all__ = [
     "in_limits",
     "into_limits",
     "joint_table",
+    "limit_table",
+    "limit_text",
     "neutral",
     "outside_limits",
     "random_configurations",
+    "sampling_range",
     "stacked_limits",
+    "value_unit",
 ]
 
 JacobianFrame: TypeAlias = Literal["base", "tip"]
@@ -50,8 +54,8 @@ class ChainJoint:
     Attributes:
         name: Joint name; of coupled joints, the leader.
         kind: ``"revolute"`` [rad], ``"continuous"`` [rad, no limits] or ``"prismatic"`` [m].
-        lower: Least value, −inf where there is none.
-        upper: Greatest value, +inf where there is none.
+        lower: Least value [rad or m], −inf where there is none.
+        upper: Greatest value [rad or m], +inf where there is none.
         max_velocity: Greatest speed [rad/s or m/s], +inf where none is known.
     """
 
@@ -144,13 +148,13 @@ class Chain(JointSpace, Protocol):
         """The flat form that compiled code runs on."""
 
     def pose(self, q: ArrayLike) -> pin.SE3:
-        """T_base_tip at q."""
+        """T_base_tip at q (n,) [rad, m]."""
 
     def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
         """Rotation (3, 3) and position (3,) of `pose` at a q that is not checked; to be read at once and not kept."""
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base or tip axes."""
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of that frame."""
 
     def link_poses(self, q: ArrayLike) -> Floats:
         """Poses (m, 4, 4) in the base frame of the link behind each of the m physical joints of the path."""
@@ -227,18 +231,25 @@ def neutral(chain: JointSpace) -> Floats:
     return into_limits(chain, np.zeros(len(chain.joints)))
 
 
-def random_configurations(chain: JointSpace, count: int, rng: np.random.Generator) -> Floats:
-    """`count` configurations (count, n), uniform inside the limits; a joint without limits turns through ±π.
+def sampling_range(chain: JointSpace) -> tuple[Floats, Floats]:
+    """Finite ends (n,), (n,) between which joints are sampled: the limits; ±π for a joint that turns without limits.
 
-    A prismatic joint without limits moves through ±1 m, and a
-    joint with one limit through as much from there. Coupled limits are met by moving the limited joint into its
-    range, so its values gather at the ends there.
+    A prismatic joint without limits moves through ±1 m, and a joint with one limit through as much from there.
     """
     half = np.array([1.0 if joint.kind == "prismatic" else math.pi for joint in chain.joints])
     endless = 1e6  # [rad, m] some files write a huge number where they mean that there is no limit
     low, high = np.abs(chain.lower) < endless, np.abs(chain.upper) < endless
     lower = np.where(low, chain.lower, np.where(high, np.minimum(-half, chain.upper - 2 * half), -half))
     upper = np.where(high, chain.upper, np.where(low, np.maximum(half, chain.lower + 2 * half), half))
+    return lower, upper
+
+
+def random_configurations(chain: JointSpace, count: int, rng: np.random.Generator) -> Floats:
+    """`count` configurations (count, n), uniform inside the limits; see `sampling_range` for joints without any.
+
+    Coupled limits are met by moving the limited joint into its range, so its values gather at the ends there.
+    """
+    lower, upper = sampling_range(chain)
     Q = np.clip(rng.uniform(lower, upper, size=(count, len(chain.joints))), chain.lower, chain.upper)
     if chain.limit_rules:
         Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)
@@ -294,6 +305,13 @@ def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floa
     return lower, upper, velocity
 
 
+def value_unit(joints: Iterable[ChainJoint], per: str = "") -> str:
+    """Unit of the joints' values for a heading, ``"rad"``, ``"m"`` or ``"rad or m"``, each with `per` behind it."""
+    slides = {joint.kind == "prismatic" for joint in joints}
+    units = [unit for unit, wanted in (("rad", False), ("m", True)) if wanted in slides]
+    return " or ".join(unit + per for unit in units or ["rad"])
+
+
 def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "") -> Table:
     """The joints of a chain with their values in radians and degrees, or metres."""
     cells = tuple(
@@ -302,3 +320,21 @@ def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = ""
     )
     columns = (Column("joint"), Column("[rad, m]", number=True), Column("[deg]", number=True))
     return Table(columns, cells, title=title, note=note)
+
+
+def limit_table(chain: JointSpace, title: str) -> Table:
+    """The joints of a chain or tree with their kinds, ranges and speeds; coupled ranges are named below."""
+    unit, speed = value_unit(chain.joints), value_unit(chain.joints, "/s")
+    numbers = (f"lower [{unit}]", f"upper [{unit}]", f"max speed [{speed}]")
+    rows = tuple(
+        (joint.name, joint.kind, *map(limit_text, (joint.lower, joint.upper, joint.max_velocity)))
+        for joint in chain.joints
+    )
+    rules = [f"The range of {rule.joint} also depends on {rule.by}." for rule in chain.limit_rules]
+    columns = (Column("joint"), Column("kind"), *(Column(heading, number=True) for heading in numbers))
+    return Table(columns, rows, title=title, note="\n".join(rules))
+
+
+def limit_text(value: float) -> str:
+    """A limit for a table: four digits, or that there is none."""
+    return f"{value:.4g}" if math.isfinite(value) else "none"

@@ -229,7 +229,7 @@ class DHChain:
         return self._frames(configuration(self, q))[1:]
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of base or tip frame.
 
         Column of a revolute joint: (z × (p_tip − p); z), with z the joint's axis and p a point on it.
 

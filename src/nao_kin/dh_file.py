@@ -8,17 +8,15 @@ from __future__ import annotations
 import ast
 import math
 import operator
-import re
-import tomllib
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nao_kin.arrays import vector
 from nao_kin.dh_row import as_row
-from nao_kin.errors import InvalidInputError, TableFileError, near_matches
+from nao_kin.errors import InvalidInputError, TableFileError
 from nao_kin.se3 import as_pose, from_xyz_rpy
+from nao_kin.toml_file import TomlFile
 
 if TYPE_CHECKING:
     import os
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["format_table_file", "parse_table_file", "read_table_file"]
 
-_LARGEST_FILE = 1 << 20  # a table of a thousand rows is a tenth of this
 _HUGE = 1e300  # TOML has integers that no float holds
 _TOP_KEYS = ("name", "convention", "lengths", "angles", "base_name", "tip_name", "base", "tool", "joint")
 _NUMBERS = ("a", "alpha", "d", "theta")
@@ -42,19 +39,7 @@ def read_table_file(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises:
         TableFileError: Unreadable or malformed.
     """
-    name = str(path)
-    try:
-        file = Path(path)
-        if not file.is_file():
-            raise TableFileError(name, None, "no such file." if not file.exists() else "not a regular file.")
-        if file.stat().st_size > _LARGEST_FILE:
-            raise TableFileError(name, None, f"larger than {_LARGEST_FILE} bytes, so it is no DH table.")
-        text = file.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise TableFileError(name, None, f"cannot be read: {error.strerror}.") from None
-    except UnicodeDecodeError as error:
-        raise TableFileError(name, None, f"not UTF-8 text (byte {error.start}).") from None
-    return parse_table_file(text, name)
+    return _Reader(TomlFile.read(path, TableFileError, "DH table")).table()
 
 
 def parse_table_file(text: str, path: str = "<table>") -> dict[str, Any]:
@@ -63,24 +48,17 @@ def parse_table_file(text: str, path: str = "<table>") -> dict[str, Any]:
     Raises:
         TableFileError: Malformed; carries the line and what was expected.
     """
-    try:
-        data = tomllib.loads(text)
-    except RecursionError:
-        raise TableFileError(path, None, "nested too deeply to be a DH table.") from None
-    except tomllib.TOMLDecodeError as error:
-        found = re.search(r"at line (\d+)", str(error))
-        raise TableFileError(path, int(found[1]) if found else None, f"not TOML: {error}.") from None
-    return _Reader(text, path).table(data)
+    return _Reader(TomlFile.parse(text, path, TableFileError, "DH table")).table()
 
 
 class _Reader:
     """Checks parsed TOML against the format, finding lines in the text for its messages."""
 
-    def __init__(self, text: str, path: str) -> None:
-        self.lines = text.splitlines()
-        self.path = path
+    def __init__(self, file: TomlFile) -> None:
+        self.file, self.error, self.known_keys = file, file.error, file.known_keys
 
-    def table(self, data: dict[str, Any]) -> dict[str, Any]:
+    def table(self) -> dict[str, Any]:
+        data = self.file.data
         self.known_keys(data, _TOP_KEYS, "", 0)
         if "convention" not in data:
             raise self.error("", 0, "", "convention is missing: 'standard' (Rz Tz Tx Rx) or 'modified' (Rx Tx Rz Tz).")
@@ -173,31 +151,6 @@ class _Reader:
         if not isinstance(data[key], str):
             raise self.error("", 0, key, f"{key}: expected text, got {data[key]!r}.")
         return str(data[key])
-
-    def known_keys(self, data: dict[str, Any], known: Sequence[str], section: str, number: int) -> None:
-        for key in data:
-            if key not in known:
-                near = near_matches(key, known)
-                hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}."
-                raise self.error(section, number, key, f"unknown key {key!r}: {hint}")
-
-    def error(self, section: str, number: int, key: str, reason: str) -> TableFileError:
-        return TableFileError(self.path, self.line(section, number, key), reason)
-
-    def line(self, section: str, number: int, key: str) -> int | None:
-        """The line of a key in the number-th table of that name, else of the table's heading, else None."""
-        start, seen = (0, 0) if not section else (None, 0)
-        for index, line in enumerate(self.lines):
-            heading = re.match(r"\s*\[+\s*([\w.\"'-]+)\s*\]+", line)
-            if heading:
-                seen += heading[1] == section
-                inside = heading[1] == section and seen == number
-                if start is not None and not inside:
-                    break
-                start = index if inside else start
-            if start is not None and key and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=", line):
-                return index + 1
-        return None if start is None or not section else start + 1
 
 
 _OPERATORS: dict[type, Callable[[float, float], float]] = {

@@ -38,6 +38,9 @@ def to_dh(chain: Chain, convention: Convention = "standard") -> DHChain:
         chain: Any chain in which every joint has a value of its own.
         convention: ``"standard"`` or ``"modified"``.
 
+    Returns:
+        The table, one row a joint; lengths in metres, angles in radians.
+
     Raises:
         InvalidInputError: Unknown convention; coupled joints, for which a table has no column; or lines so nearly, but
             not quite, parallel that lengths of many kilometres would be needed, which double precision cannot hold.

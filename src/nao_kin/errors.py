@@ -14,11 +14,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AuditError",
+    "FrameError",
     "InvalidInputError",
+    "KeyframeFileError",
     "MissingExtraError",
     "NaoKinError",
     "NoPathError",
     "TableFileError",
+    "TrajectoryFileError",
     "UnknownNameError",
     "UrdfError",
 ]
@@ -119,6 +122,19 @@ class AuditError(NaoKinError, RuntimeError):
         )
 
 
+class FrameError(NaoKinError, ValueError):
+    """A message of the streaming protocol was refused.
+
+    Attributes:
+        reason: What is wrong with it, one sentence without a full stop.
+        fatal: Whether the place of the next message is lost too, so that the connection has to end.
+    """
+
+    def __init__(self, reason: str, *, fatal: bool = False) -> None:
+        self.reason, self.fatal = reason, fatal
+        super().__init__(f"Message refused: {reason}.")
+
+
 class _FileError(NaoKinError, ValueError):
     """A file was refused, with the place in it."""
 
@@ -146,6 +162,22 @@ class UrdfError(_FileError):
 
 class TableFileError(_FileError):
     """A DH table file was refused; the same attributes as `UrdfError`, without a code."""
+
+
+class TrajectoryFileError(_FileError):
+    """A trajectory file was refused; the same attributes as `UrdfError`, without a code, and the column.
+
+    Attributes:
+        column: Number of the column, 1-based, or None where the whole line or file is meant.
+    """
+
+    def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, column: int | None = None) -> None:
+        super().__init__(path, line, reason if column is None else f"column {column}: {reason}", hint)
+        self.column = column
+
+
+class KeyframeFileError(_FileError):
+    """A file of keyframes was refused; the same attributes as `UrdfError`, without a code."""
 
 
 def near_matches(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

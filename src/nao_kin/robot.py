@@ -36,7 +36,11 @@ __all__ = ["Robot", "load"]
 def load(robot: str | os.PathLike[str]) -> Robot:
     """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF file.
 
-    Text that ends in ``.urdf`` or contains a path separator is a path; a `pathlib.Path` always is.
+    Args:
+        robot: Text that ends in ``.urdf`` or contains a path separator is a path; a `pathlib.Path` always is.
+
+    Returns:
+        The robot, with named chains and coupled limits if it is a known one.
 
     Raises:
         UnknownNameError: No robot of that name; carries near matches.
@@ -78,7 +82,7 @@ class Robot:
 
     @classmethod
     def from_document(cls, document: UrdfDocument, known: KnownRobot | None = None) -> Robot:
-        """A robot from a parsed file, with what is known about it if it is a known one."""
+        """A robot from a parsed document, with what is known about it beyond that if it is a known one."""
         roots = [] if document.directory is None else [document.directory]
         if known is None:
             return cls(name=document.name, document=document, mesh_roots=tuple(roots))
@@ -204,7 +208,7 @@ class Robot:
         )
 
     def pose(self, posture: Mapping[str, float], tip: str, base: str | None = None) -> pin.SE3:
-        """T_base_tip at a posture; the base is the root unless named.
+        """T_base_tip of a tip frame in a base frame, the root unless named, at a posture.
 
         Raises:
             UnknownNameError: Unknown joint or frame; carries near matches.
@@ -310,9 +314,11 @@ class Robot:
             lower, upper = joint_range(joint)
             speed = joint.limit.velocity if joint.limit else None
             follows = f"{joint.kind}, follows {leaders[joint.name]}" if joint.name in leaders else joint.kind
-            rows.append((joint.name, follows, f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}"))
-        columns = (Column("joint"), Column("kind"), *(Column(c, number=True) for c in ("lower", "upper", "max speed")))
-        return Table(columns, tuple(rows), title=f"{self.name}: joints [rad, rad/s; m, m/s]")
+            limits = (f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}")
+            rows.append((joint.name, follows, "m" if joint.kind == "prismatic" else "rad", *limits))
+        numbers = (Column(c, number=True) for c in ("lower [unit]", "upper [unit]", "max speed [unit/s]"))
+        columns = (Column("joint"), Column("kind"), Column("unit"), *numbers)
+        return Table(columns, tuple(rows), title=f"{self.name}: {len(rows)} moving joints")
 
 
 def _limit_rule(rule: CoupledLimit) -> LimitRule:

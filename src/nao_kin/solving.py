@@ -5,21 +5,20 @@ Closed forms are imported when they are asked for: who iterates need not wait fo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, cast, overload
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import along, batch, methods
+from nao_kin.ik import batch, methods
 from nao_kin.ik.loop import require_options
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from nao_kin.chain import Chain
-    from nao_kin.ik.along import FollowResult
     from nao_kin.ik.batch import BatchResult
     from nao_kin.ik.loop import Budget
     from nao_kin.ik.methods import Engine
@@ -27,9 +26,10 @@ if TYPE_CHECKING:
     from nao_kin.ik.target import Target, TargetLike
     from nao_kin.ik.tree_problem import TreeResult
 
-__all__ = ["follow", "solve", "solve_batch"]
+__all__ = ["CLOSED", "solve", "solve_batch"]
 
-_CLOSED = "closed"
+CLOSED: Final = "closed"
+"""Name of the method that iterates nothing."""
 
 
 @overload
@@ -107,7 +107,7 @@ def solve(
         UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
             matches.
     """
-    if method == _CLOSED and not isinstance(chain, Tree):
+    if method == CLOSED and not isinstance(chain, Tree):
         from nao_kin.analytic.closed import solve_closed
 
         _refuse_steps(budget, tolerances, parameters, engine=engine, trace=trace)
@@ -156,6 +156,9 @@ def solve_batch(
         audit: ``"sample"`` or ``"all"``.
         parameters: What to tune the method with, see `nao_kin.solve`.
 
+    Returns:
+        A row a target, in their order; rows that are not solved hold the nearest joints found.
+
     Raises:
         InvalidInputError: Wrong shapes, not finite, a rotation part that is none (the row is named), mixed kinds, or
             what the method cannot do.
@@ -163,48 +166,12 @@ def solve_batch(
         AuditError: Two forward kinematics disagree: a defect of this package or of the machine.
     """
     options: dict[str, Any] = {"tolerances": tolerances, "seed": seed, "audit": audit}
-    if method == _CLOSED:
+    if method == CLOSED:
         from nao_kin.analytic.closed import solve_closed_batch
 
         _refuse_steps(budget, tolerances, parameters)
         return solve_closed_batch(chain, targets, q0, **options)
     return batch.solve_batch(chain, targets, q0, method=method, budget=budget, parameters=parameters, **options)
-
-
-def follow(
-    chain: Chain,
-    path: Iterable[TargetLike],
-    q0: ArrayLike | Mapping[str, float],
-    *,
-    jump: float = 0.5,
-    method: str = "lm",
-    tolerances: Tolerances = TOLERANCES,
-) -> FollowResult:
-    """Joints along a path, each sample solved from the one before: one branch, never a new start.
-
-    It ends early, and says at which sample and why, where a sample is not reached from its predecessor or where a joint
-    would have to move by more than `jump`.
-
-    Args:
-        chain: The chain.
-        path: Targets in order, as `nao_kin.solve` takes them.
-        q0: Start (n,) or posture, near the first sample.
-        jump: Largest move of a joint between consecutive samples [rad or m]; the move to the first one is free.
-        method: A name in `nao_kin.METHODS`; ``"closed"`` takes at each sample the branch nearest to the one before.
-        tolerances: When a sample counts as reached.
-
-    Raises:
-        InvalidInputError: An empty path, a bad target, or a jump that is not positive.
-        UnknownNameError: No such method or joint.
-    """
-    if method != _CLOSED:
-        return along.follow(chain, path, q0, jump=jump, method=method, tolerances=tolerances)
-    from nao_kin.analytic.closed import solve_closed
-
-    def step(target: Target, start: along.Start) -> IKResult:
-        return solve_closed(chain, target, start, tolerances=tolerances)
-
-    return along.followed(chain, path, q0, jump, step)
 
 
 def _refuse_steps(

@@ -7,12 +7,20 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import rich.console
 
 __all__ = ["Column", "Style", "Table"]
 
 Style: TypeAlias = Literal["", "good", "bad", "faint"]
 _COLOURS = {"": "", "good": "green", "bad": "red", "faint": "dim"}
+
+# The page around is the notebook's, light or dark: colours are of middle lightness, and everything else is inherited.
+_CSS = {"": "", "good": "color:#2a9153", "bad": "color:#d6453d", "faint": "opacity:0.65"}
+_TITLE = "text-align:left;font-weight:600"
+_FOLDED = 40
+"""Rows from which on a table in HTML is folded, so that a notebook stays a page one can read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +78,25 @@ class Table:
         return rich.console.Group(*title, table, *note)
 
     def _repr_html_(self) -> str:
-        def cell(tag: str, text: str, column: Column) -> str:
-            align = "right" if column.number else "left"
-            return f'<{tag} style="text-align:{align}">{html.escape(text)}</{tag}>'
+        """The table as a fragment of HTML, every text escaped; long ones are folded under their title."""
+        note = f'<p style="white-space:pre-line">{html.escape(self.note)}</p>' if self.note else ""
+        if len(self.rows) < _FOLDED:
+            caption = f'<caption style="{_TITLE}">{html.escape(self.title)}</caption>' if self.title else ""
+            return f"<table>{caption}{self._html_rows()}</table>{note}"
+        count = html.escape(f"{self.title or 'table'} ({len(self.rows)} rows)")
+        summary = f'<summary style="{_TITLE};cursor:pointer">{count}</summary>'
+        return f"<details>{summary}<table>{self._html_rows()}</table></details>{note}"
 
-        head = "".join(cell("th", column.heading, column) for column in self.columns)
-        body = "".join(
-            "<tr>" + "".join(cell("td", text, column) for text, column in zip(row, self.columns, strict=True)) + "</tr>"
-            for row in self.rows
-        )
-        caption = f"<caption>{html.escape(self.title)}</caption>" if self.title else ""
-        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
-        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{note}"
+    def _html_rows(self) -> str:
+        def cells(tag: str, texts: Iterable[str], attributes: str = "") -> str:
+            sides = ["right" if column.number else "left" for column in self.columns]
+            return "".join(
+                f'<{tag}{attributes} style="text-align:{side}">{html.escape(text)}</{tag}>'
+                for text, side in zip(texts, sides, strict=True)
+            )
+
+        head = cells("th", (column.heading for column in self.columns), ' scope="col"')
+        css = [_CSS[self.styles.get(index, "")] for index in range(len(self.rows))]
+        openings = [f'<tr style="{style}">' if style else "<tr>" for style in css]
+        body = "".join(f"{opening}{cells('td', row)}</tr>" for opening, row in zip(openings, self.rows, strict=True))
+        return f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"

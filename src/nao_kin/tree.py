@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_kin.arrays import frozen, rows
-from nao_kin.chain import ChainJoint, LimitRule, configuration, stacked_limits
+from nao_kin.chain import ChainJoint, LimitRule, configuration, limit_table, stacked_limits
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.urdf_path import Coupling, couplings_on
 
@@ -181,6 +181,9 @@ class Tree:
 
     def __repr__(self) -> str:
         return f"<Tree {self.name}: {', '.join(self.joint_names)}>"
+
+    def _repr_html_(self) -> str:
+        return limit_table(self, f"{self.name}: {len(self.chains)} tips, {len(self.joints)} joints")._repr_html_()
 
 
 def _by_tip(chains: Iterable[Chain]) -> dict[str, Chain]:

@@ -20,6 +20,7 @@ from nao_kin.chain import (
     compiled_jacobians,
     compiled_poses,
     configuration,
+    limit_table,
     stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
@@ -161,7 +162,7 @@ class UrdfChain:
         return placement.rotation, placement.translation
 
     def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
-        """Frame Jacobian (6, n) at the tip point, rows (linear; angular), in base axes or (``frame="tip"``) body axes.
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of base or tip frame.
 
         Raises:
             InvalidInputError: Wrong length, not finite, or another frame than these two.
@@ -229,6 +230,9 @@ class UrdfChain:
 
     def __repr__(self) -> str:
         return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"
+
+    def _repr_html_(self) -> str:
+        return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
 
 
 def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:

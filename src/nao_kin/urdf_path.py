@@ -21,7 +21,17 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot
     from nao_kin.urdf.elements import UrdfJoint
 
-__all__ = ["Coupling", "Step", "chain_joints", "couplings_on", "joint_range", "motor_ranges", "walk"]
+__all__ = [
+    "Coupling",
+    "Step",
+    "chain_joints",
+    "couplings_on",
+    "joint_kind",
+    "joint_range",
+    "joint_speed",
+    "motor_ranges",
+    "walk",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +159,7 @@ def chain_joints(robot: Robot, steps: Sequence[Step]) -> tuple[ChainJoint, ...]:
             continue
         c = to_motor.get(name, Coupling(name, name, 1.0, 0.0))
         lower, upper = sorted(c.multiplier * end + c.offset for end in ranges[c.leader])
-        joints[step.column] = ChainJoint(name, _moving(step.joint), lower, upper, speed)
+        joints[step.column] = ChainJoint(name, joint_kind(step.joint), lower, upper, speed)
     return tuple(joints[column] for column in sorted(joints))
 
 
@@ -167,7 +177,8 @@ def _narrowed(leader: tuple[float, float], coupling: Coupling, follower: tuple[f
     return lower, upper
 
 
-def _moving(joint: UrdfJoint) -> Literal["revolute", "continuous", "prismatic"]:
+def joint_kind(joint: UrdfJoint) -> Literal["revolute", "continuous", "prismatic"]:
+    """How a moving joint moves."""
     if joint.kind == "fixed":
         raise ValueError(joint.name)  # paths hold moving joints only
     return joint.kind

@@ -79,6 +79,21 @@ def test_a_batch_says_what_single_poses_say(rng: np.random.Generator) -> None:
         ]
 
 
+def test_feet_that_move_with_the_body_are_those_of_single_poses(rng: np.random.Generator) -> None:
+    legs, stand = phantomx_legs(), np.array(list(standing_feet().values()))
+    T, feet = body_poses(rng, 20, 0.02, 0.1), stand + rng.uniform(-0.02, 0.02, (20, 6, 3))
+    batch = body_ik_batch(legs, T, feet)
+    for i in range(20):
+        single = body_ik(legs, T[i], feet[i])
+        assert list(single.posture.values()) == batch.q[i].tolist()
+    with pytest.raises(InvalidInputError, match="feet"):
+        body_ik_batch(legs, T[:3], feet)
+    with pytest.raises(InvalidInputError, match="feet"):
+        body_ik_batch(legs, T, np.full((20, 6, 3), math.nan))
+    with pytest.raises(InvalidInputError, match="legs"):
+        body_ik_batch({}, T, np.zeros((20, 0, 3)))
+
+
 def test_the_leg_that_cannot_reach_is_named_with_the_distance() -> None:
     legs, feet = round_legs(), round_feet()
     feet[2] = HIPS[2] + np.array([0.0, -(HIP + THIGH + SHIN + 0.0123), 0.0])

@@ -2,35 +2,40 @@
 
 from __future__ import annotations
 
-import io
+import base64
+import json
+import zlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
-from nao_kin.crosscheck import compare
-from nao_kin.documents.chains import document_chain
 from nao_kin.robot import load
-from nao_kin.view.export import export_comparison, export_html, show
+from nao_kin.view.export import export_html, show
 from nao_kin.view.record import node_paths
-from nao_kin.view.scene import robot_scene
+from nao_kin.view.robot_scene import robot_scene
+from tests.browser.seeing import box_of, pixels, robot_mask, settle, slide, tip_shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
 HOSTILE = """<robot name="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&gt;">
-  <link name="__proto__"><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link>
+  <link name="__proto__">
+    <visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+    <visual><geometry><mesh filename="spy.dae"/></geometry></visual>
+  </link>
   <link name="constructor"><visual><geometry><box size="0.1 0.1 0.3"/></geometry></visual></link>
   <link name="a//b">
     <visual><geometry><mesh filename="&lt;img src=x onerror=window.hit=1&gt;.stl"/></geometry></visual>
   </link>
+  <link name="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&gt;"/>
   <joint name="&lt;img src=x onerror=window.hit=1&gt;" type="revolute">
     <parent link="__proto__"/><child link="constructor"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/>
     <limit lower="-1" upper="1" velocity="1" effort="1"/>
+  </joint>
+  <joint name="__proto__" type="continuous">
+    <parent link="a//b"/><child link="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&gt;"/><axis xyz="0 0 1"/>
   </joint>
   <joint name="&quot; onmouseover=&quot;window.hit=1" type="fixed">
     <parent link="constructor"/><child link="a//b"/><origin xyz="0 0 0.2"/>
@@ -38,29 +43,13 @@ HOSTILE = """<robot name="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&g
 </robot>
 """
 
-
-def pixels(page: Any) -> NDArray[np.int16]:
-    settle(page)
-    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=np.int16)
-
-
-def settle(page: Any) -> None:
-    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-
-
-def robot_mask(page: Any) -> NDArray[np.bool_]:
-    """Where the picture changes when the robot disappears; the ground, and so the shadow, is left out."""
-    hide = "(name) => { naoKin.viewer.set_property([name], 'visible', false); naoKin.viewer.set_dirty(); }"
-    page.evaluate(hide, "ground")
-    seen = pixels(page)
-    page.evaluate(hide, "robot")
-    return np.abs(seen - pixels(page)).max(axis=2) > 12
-
-
-def box_of(page: Any, selector: str) -> tuple[int, int, int, int]:
-    box = page.locator(selector).bounding_box()
-    left, top = int(box["x"]), int(box["y"])
-    return left, top, left + int(box["width"]) + 1, top + int(box["height"]) + 1
+SPY = """<?xml version="1.0"?>
+<!DOCTYPE COLLADA [<!ENTITY secret SYSTEM "file://{secret}">]>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><contributor><author>&secret;</author></contributor><up_axis>Z_UP</up_axis></asset>
+  <library_images><image id="i"><init_from>{secret}</init_from></image></library_images>
+</COLLADA>
+"""
 
 
 def exported(name: str, tmp_path: Path) -> Path:
@@ -71,8 +60,15 @@ def exported(name: str, tmp_path: Path) -> Path:
     return export_html(tmp_path / f"{name}.html", robot)
 
 
-@pytest.mark.parametrize("name", ["nao", "jaco2", "phantomx", "ur5"])
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 800), (900, 420)])
+@pytest.mark.parametrize(
+    ("name", "width", "height"),
+    [
+        *(("nao", *size) for size in ((1280, 800), (390, 844), (900, 420))),
+        *(("phantomx", *size) for size in ((1280, 800), (390, 844))),
+        ("jaco2", 1280, 800),
+        ("ur5", 1280, 800),
+    ],
+)
 def test_the_robot_is_in_full_view(
     name: str, width: int, height: int, tmp_path: Path, visit: Callable[..., Any]
 ) -> None:
@@ -86,7 +82,7 @@ def test_the_robot_is_in_full_view(
     assert columns[0] > 2
     assert columns[-1] < width - 3
     assert max(np.ptp(rows) / height, np.ptp(columns) / width) > 0.45  # and not lost in the distance
-    for cover in ("#card", "#reset"):
+    for cover in ("#card", "#toolbar"):
         left, top, right, bottom = box_of(visited.page, cover)
         assert not mask[top:bottom, left:right].any(), cover
     assert visited.requests == [path.as_uri()]
@@ -108,13 +104,16 @@ def test_the_nodes_in_the_browser_stand_where_pinocchio_says(tmp_path: Path, vis
         np.testing.assert_allclose(there, expected[node.label].homogeneous, rtol=0, atol=1e-9)
 
 
-def test_the_joint_panel_opens_and_the_robot_makes_room(tmp_path: Path, visit: Callable[..., Any]) -> None:
-    page = visit(exported("nao", tmp_path), 390, 800).page
-    assert not page.get_by_text("LElbowRoll").is_visible()
-    page.get_by_text("Joint values").click()
-    assert page.get_by_text("LElbowRoll").is_visible()
+def test_folding_the_panel_gives_the_robot_more_room(tmp_path: Path, visit: Callable[..., Any]) -> None:
+    page = visit(exported("nao", tmp_path), 390, 844).page
+    before = robot_mask(page)
+    assert page.get_by_label("HeadYaw", exact=True).is_visible()
+    page.locator("#grip").click()
+    assert not page.get_by_label("HeadYaw", exact=True).is_visible()
+    after = robot_mask(page)
+    assert after.sum() > 1.3 * before.sum()
     left, top, right, bottom = box_of(page, "#card")
-    assert not robot_mask(page)[top:bottom, left:right].any()
+    assert not after[top:bottom, left:right].any()
 
 
 def test_the_view_can_be_turned_and_put_back(tmp_path: Path, visit: Callable[..., Any]) -> None:
@@ -125,7 +124,7 @@ def test_the_view_can_be_turned_and_put_back(tmp_path: Path, visit: Callable[...
     page.mouse.move(820, 430, steps=4)
     page.mouse.up()
     assert (np.abs(pixels(page) - first).max(axis=2) > 12).mean() > 0.01
-    page.get_by_text("Reset view").click()
+    page.locator("#frame").click()
     page.mouse.move(5, 400)  # off the button, which looks different under the pointer
     page.evaluate("() => document.activeElement.blur()")
     assert (np.abs(pixels(page) - first).max(axis=2) > 12).mean() < 0.001
@@ -139,18 +138,6 @@ def test_a_new_size_keeps_the_robot_in_view(tmp_path: Path, visit: Callable[...,
     assert mask.shape == (700, 500)
     assert mask.any()
     assert not np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).any()
-
-
-def test_a_comparison_shows_both_chains(tmp_path: Path, visit: Callable[..., Any]) -> None:
-    found = compare(document_chain("thesis_left_arm"), load("nao_v50_h21").chain("left_arm"), samples=50)
-    page = visit(export_comparison(tmp_path / "both.html", found, explain=True)).page
-    assert page.get_by_text("Orange: thesis_left_arm").is_visible()
-    page.get_by_text("Explanation").click()
-    assert page.get_by_text("modified convention").first.is_visible()
-    picture = pixels(page)
-    red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
-    assert ((red - blue > 80) & (red - green > 30)).sum() > 300  # orange and red sticks
-    assert ((blue - red > 60) & (blue - green > 30)).sum() > 300  # blue ones
 
 
 def test_the_policy_stops_every_way_out(tmp_path: Path, visit: Callable[..., Any]) -> None:
@@ -177,17 +164,34 @@ def test_the_policy_stops_every_way_out(tmp_path: Path, visit: Callable[..., Any
 
 
 def test_a_hostile_robot_is_drawn_and_does_nothing_else(tmp_path: Path, visit: Callable[..., Any]) -> None:
+    secret = tmp_path / "secret.txt"
+    secret.write_text("open sesame", encoding="utf-8")
+    (tmp_path / "spy.dae").write_text(SPY.format(secret=secret), encoding="utf-8")
     urdf = tmp_path / "hostile.urdf"
     urdf.write_text(HOSTILE, encoding="utf-8")
     robot = load(urdf)
     path = export_html(tmp_path / "hostile.html", robot)
+    text = path.read_text(encoding="utf-8")
+    packed = json.loads(text.split('id="scene">')[1].split("</script>")[0])["deflated"]
+    for part in ("open sesame", "secret.txt"):
+        assert part not in text
+        assert part.encode() not in zlib.decompress(base64.b64decode(packed))
     visited = visit(path)
-    visited.page.get_by_text("Joint values").click()
-    visited.page.get_by_text("Not shown").click()
-    assert visited.page.locator("h1").inner_text() == robot.name
-    assert visited.page.locator("img").count() == 0
-    assert visited.page.evaluate("() => window.hit ?? null") is None
-    assert robot_mask(visited.page).mean() > 0.01
+    page = visited.page
+    page.get_by_text("Notes").click()
+    for switch in ("x", "a", "l", "b"):
+        page.keyboard.press(switch)
+    page.evaluate("() => { document.querySelector('#j0').value = 0.5; }")
+    page.locator("#j0").dispatch_event("input")
+    assert page.evaluate("() => naoKin.state.values") == [0.5, 0.0]
+    assert page.locator("h1").inner_text() == robot.name
+    assert page.locator("img").count() == 0
+    assert page.evaluate("() => window.hit ?? null") is None
+    assert page.evaluate("() => ({}).label ?? null") is None  # nothing was written to the prototype of objects
+    assert [page.locator(f"#tip-frame option >> nth={k}").inner_text() for k in range(4)] == [
+        node.label for node in robot_scene(robot).nodes
+    ]
+    assert robot_mask(page).mean() > 0.01
     assert visited.requests == [path.as_uri()]
     assert (visited.console, visited.errors) == ([], [])
 
@@ -212,5 +216,8 @@ def test_without_webgl_the_numbers_remain(tmp_path: Path, launch: Callable[..., 
     page.goto(path.as_uri())
     page.wait_for_selector('html[data-state="failed"]', state="attached")
     assert page.locator("#trouble").is_visible()
-    page.get_by_text("Joint values").click()
-    assert page.locator("tbody tr").count() == len(load("jaco2").joint_names)
+    jaco2 = load("jaco2")
+    slide(page, "#j1", 2.0)
+    assert page.locator(".joint").count() == len(jaco2.joint_names)
+    expected = jaco2.pose({**jaco2.neutral, "joint_2": 2.0}, "end_effector").translation
+    np.testing.assert_allclose(tip_shown(page)[:3], expected, rtol=0, atol=1e-6)

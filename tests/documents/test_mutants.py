@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import pytest
 
 from nao_kin.documents import mutants as module
 from nao_kin.documents.claim import DOCUMENTS, Claim, Measured, Verdict, judged
-from nao_kin.documents.ledger import claims
+from nao_kin.documents.ledger import claims, ledger
 from nao_kin.documents.mutants import EQUIVALENT, Trial, mutants, trials_of, tried
 
 
@@ -83,5 +84,30 @@ def _endless(a: float, b: float) -> float:
 
 def test_a_copy_that_never_ends_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_PATIENCE", 0.2)
-    hows = {trial.how for trial in (tried(mutant) for mutant in mutants(_claim(_endless))) if trial.caught}
-    assert "TimeoutError" in hows
+    assert {tried(mutant).how for mutant in mutants(_claim(_endless))} == {"fails"}
+
+
+def _raises(a: float, b: float) -> float:
+    return [a][1] + b
+
+
+def test_a_form_that_raises_has_no_value_and_fails() -> None:
+    found = judged(_claim(_raises))
+    assert found.verdict is Verdict.fails
+    assert found.measured is not None
+    assert found.measured.residual == math.inf
+    assert "IndexError" in found.measured.where
+
+
+def test_an_error_of_the_check_is_no_verdict() -> None:
+    def check(given: object) -> Measured:
+        raise IndexError("the check's own")
+
+    claim = replace(_claim(), check=check)
+    with pytest.raises(IndexError, match="own"):
+        judged(claim)
+    assert not any(tried(mutant).caught for mutant in mutants(claim))
+
+
+def test_no_printed_form_fails_by_raising() -> None:
+    assert not [found.claim.id for found in ledger() if found.measured and found.measured.where.startswith("no value")]

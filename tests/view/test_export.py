@@ -15,7 +15,7 @@ from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.view import export
 from nao_kin.view.export import export_html, show
 from nao_kin.view.page import page
-from nao_kin.view.scene import robot_scene
+from nao_kin.view.robot_scene import robot_scene
 
 if TYPE_CHECKING:
     from nao_kin.robot import Robot

@@ -19,7 +19,8 @@ import umsgpack
 from nao_kin.robot import Robot, load
 from nao_kin.view.page import page
 from nao_kin.view.record import node_paths, recorded
-from nao_kin.view.scene import JointValue, Node, Scene, robot_scene
+from nao_kin.view.robot_scene import robot_scene
+from nao_kin.view.scene import Node, Scene, SceneJoint
 
 HOSTILE = [
     "</script><script>alert(1)</script>",
@@ -50,8 +51,8 @@ def tags(text: str) -> list[tuple[str, dict[str, str | None]]]:
 
 
 def hostile_scene() -> Scene:
-    nodes = tuple(Node(name, index - 1 if index else None, name, np.eye(4), ()) for index, name in enumerate(HOSTILE))
-    joints = tuple(JointValue(name, "revolute", 0.1) for name in HOSTILE)
+    nodes = tuple(Node(name, index - 1 if index else None, name, np.eye(4)) for index, name in enumerate(HOSTILE))
+    joints = tuple(SceneJoint(name, "revolute", 0.1) for name in HOSTILE)
     return Scene(HOSTILE[0], nodes, joints, HOSTILE[0], "ab" * 32, tuple(HOSTILE))
 
 
@@ -63,7 +64,7 @@ def test_same_input_same_bytes(small: Robot) -> None:
 def test_same_bytes_in_another_process() -> None:
     program = (
         "import hashlib; from nao_kin.robot import load; from nao_kin.view.page import page;"
-        "from nao_kin.view.scene import robot_scene;"
+        "from nao_kin.view.robot_scene import robot_scene;"
         "print(hashlib.sha256(page(robot_scene(load('jaco2'))).encode()).hexdigest())"
     )
     there = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
@@ -76,7 +77,7 @@ def test_hostile_names_bring_no_element_and_no_attribute() -> None:
     mild = Scene(
         harmless[0],
         scene.nodes,
-        tuple(JointValue(name, "revolute", 0.1) for name in harmless),
+        tuple(SceneJoint(name, "revolute", 0.1) for name in harmless),
         harmless[0],
         scene.sha256,
         tuple(harmless),
@@ -137,7 +138,9 @@ def test_the_data_is_json_without_a_tag(small: Robot) -> None:
     assert "<" not in data
     packed = json.loads(data)
     stream = io.BytesIO(zlib.decompress(base64.b64decode(packed["deflated"])))
-    commands = [umsgpack.unpackb(stream.read(length)) for length in packed["lengths"]]
+    first, *lengths = packed["lengths"]
+    assert json.loads(stream.read(first))["title"] == "small"
+    commands = [umsgpack.unpackb(stream.read(length)) for length in lengths]
     assert not stream.read()
     assert sum(command["type"] == "set_transform" for command in commands) == len(small.frame_names)
     assert not any(command["type"] == "set_control" for command in commands)  # the viewer evaluates its callback

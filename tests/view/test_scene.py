@@ -10,7 +10,8 @@ import pytest
 from nao_kin.errors import UnknownNameError
 from nao_kin.robot import Robot, load
 from nao_kin.view.page import page
-from nao_kin.view.scene import SHAPELESS, Node, Scene, bounds, robot_scene, world_poses
+from nao_kin.view.robot_scene import SHAPELESS, robot_scene
+from nao_kin.view.scene import Node, Scene, bounds, local_pose, world_poses
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,10 +48,12 @@ def test_every_node_hangs_below_its_parent_link_by_its_joint(small: Robot) -> No
 
 def test_changing_one_joint_changes_one_placement(small: Robot) -> None:
     before, after = robot_scene(small, {}), robot_scene(small, {"lift": 0.1})
+    poses = [
+        [local_pose(node, {joint.name: joint.value for joint in scene.joints}) for node in scene.nodes]
+        for scene in (before, after)
+    ]
     changed = [
-        a.label
-        for a, b in zip(before.nodes, after.nodes, strict=True)
-        if not np.allclose(a.placement, b.placement, rtol=0, atol=1e-12)
+        node.label for node, a, b in zip(before.nodes, *poses, strict=True) if not np.allclose(a, b, rtol=0, atol=1e-12)
     ]
     assert changed == ["slide"]
 
@@ -73,13 +76,15 @@ def test_unknown_joint_is_refused_with_its_neighbours(small: Robot) -> None:
         robot_scene(small, {"sholder": 0.0})
 
 
-def test_missing_mesh_is_a_note_and_nothing_else(small: Robot, tmp_path: object) -> None:
+def test_missing_mesh_is_a_note_and_a_box_with_its_name(small: Robot, tmp_path: object) -> None:
     scene = robot_scene(small)
     (note,) = scene.notes
     assert "wheel" in note
     assert "missing/wheel.stl" in note
     assert str(tmp_path) not in note
-    assert next(node for node in scene.nodes if node.label == "wheel").meshes == ()
+    (box,) = next(node for node in scene.nodes if node.label == "wheel").meshes
+    assert box.sign is not None
+    assert box.sign.text == "wheel.stl"
 
 
 def test_bounds_follow_the_posture(small: Robot) -> None:
@@ -92,7 +97,7 @@ def test_bounds_follow_the_posture(small: Robot) -> None:
 def test_a_skeleton_without_shapes_has_bounds() -> None:
     placement = np.eye(4)
     placement[:3, 3] = (1.0, 2.0, 3.0)
-    low, high = bounds(Scene("bones", (Node("a", None, None, np.eye(4), ()), Node("b", 0, "j", placement, ()))))
+    low, high = bounds(Scene("bones", (Node("a", None, None, np.eye(4)), Node("b", 0, "j", placement))))
     np.testing.assert_array_equal(low, (0, 0, 0))
     np.testing.assert_array_equal(high, (1, 2, 3))
 
@@ -113,5 +118,19 @@ def test_a_shape_beyond_all_measure_is_a_note(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     scene = robot_scene(load(path))
-    assert len(scene.nodes[0].meshes) == 1
+    assert [mesh.sign is None for mesh in scene.nodes[0].meshes] == [True, False]
     assert "box" in scene.notes[0]
+
+
+def test_collision_shapes_that_are_the_visuals_come_once(tmp_path: Path) -> None:
+    path = tmp_path / "twice.urdf"
+    box, ball = '<geometry><box size="1 2 3"/></geometry>', '<geometry><sphere radius="0.2"/></geometry>'
+    path.write_text(
+        f'<robot name="twice"><link name="same"><visual>{box}</visual><collision>{box}</collision></link>'
+        f'<link name="other"><visual>{box}</visual><collision>{ball}</collision></link>'
+        '<joint name="j" type="fixed"><parent link="same"/><child link="other"/></joint></robot>',
+        encoding="utf-8",
+    )
+    same, other = robot_scene(load(path)).nodes
+    assert (same.collides, len(same.collisions)) == (True, 0)
+    assert (other.collides, len(other.collisions)) == (False, 1)

@@ -16,6 +16,7 @@ from nao_kin.ik.batch import AUDIT_TOLERANCE, AUDITED, Wanted, inside_limits
 from nao_kin.ik.measure import measure_many
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.se3 import ROTATION_TOLERANCE
+from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class BatchSolutions:
         return np.asarray(self.codes == SOLVED)
 
     def branch(self, row: int, place: int) -> str:
-        """The branch of a solution in words; empty where there is none."""
+        """The branch of the solution at a row and a place in it, in words; empty where there is none."""
         number, singularity = self.branches[row, place].tolist()
         return self.form.label(number, singularity) if self.codes[row, place] != ABSENT else ""
 
@@ -79,6 +80,16 @@ class BatchSolutions:
     def __repr__(self) -> str:
         within = int(self.solved.any(axis=1).sum())
         return f"<BatchSolutions of {len(self)}: {int(self.found.sum())} solutions, {within} targets within limits>"
+
+    def _repr_html_(self) -> str:
+        found, within = self.found.sum(axis=1), np.asarray(self.solved.any(axis=1))
+        rows = tuple(
+            (str(count), str(int((found == count).sum())), str(int((within & (found == count)).sum())))
+            for count in np.unique(found).tolist()
+        )
+        headings = ("solutions of a target", "targets", "of these with one within limits")
+        title = f"{len(self)} targets of {self.chain.name}: {int(found.sum())} solutions"
+        return Table(tuple(Column(heading, number=True) for heading in headings), rows, title=title)._repr_html_()
 
 
 def solve_all_batch(
@@ -103,6 +114,9 @@ def solve_all_batch(
         tolerances: When a target counts as reached.
         seed: For the sample.
         audit: ``"sample"`` or ``"all"``.
+
+    Returns:
+        A row of solutions a target, those within limits first.
 
     Raises:
         InvalidInputError: Wrong shapes, not finite, not rigid (the row is named), mixed kinds, or no form fits.

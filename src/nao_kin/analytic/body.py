@@ -177,6 +177,7 @@ def body_ik_batch(
     """`body_ik` for many poses of the body (N, 4, 4), on all cores.
 
     Every foot is measured by a second compiled forward kinematics, and a seeded sample of poses by the chains too.
+    Feet that move, as those of a walking machine, are given as an array with a set of feet for each pose (N, L, 3).
 
     Raises:
         InvalidInputError: As `body_ik`; the row is named.
@@ -186,7 +187,7 @@ def body_ik_batch(
     from nao_kin.kernels.audit import tips
 
     R, t = _poses(T_ground_body)
-    points, starts, parts = _feet(legs, feet), _starts(legs, near), []
+    points, starts, parts = _moving_feet(legs, feet, len(t)), _starts(legs, near), []
     rng = np.random.default_rng(seed)
     for (name, chain), point in zip(legs.items(), points, strict=True):
         p_body = np.einsum("nji,nj->ni", R, point - t)
@@ -297,6 +298,17 @@ def _feet(legs: Mapping[str, Chain], feet: FeetLike) -> Floats:
     if len(points) != len(legs):
         raise InvalidInputError("feet", f"{len(legs)} rows, one a leg", f"{len(points)}")
     return points
+
+
+def _moving_feet(legs: Mapping[str, Chain], feet: FeetLike, count: int) -> Floats:
+    """The feet leg by leg: (L, 1, 3) where they stay, (L, count, 3) where there is a set for each pose."""
+    if getattr(feet, "ndim", 2) != 3:
+        return _feet(legs, feet)[:, None]
+    points = np.asarray(feet)
+    if points.shape != (count, len(legs), 3):
+        raise InvalidInputError("feet", f"an array of shape {(count, len(legs), 3)}", f"shape {points.shape}")
+    _feet(legs, points[0] if count else np.zeros((len(legs), 3)))  # which checks the legs
+    return float_rows(points.reshape(-1, 3), "feet", 3).reshape(points.shape).swapaxes(0, 1)
 
 
 def _starts(legs: Mapping[str, Chain], near: Mapping[str, float] | None) -> Mapping[str, Floats | None]:

@@ -14,18 +14,19 @@ import math
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from nao_kin.analytic.six_r_kernel import (
+    ANY_ELBOW,
     ANY_SHOULDER,
     ANY_WRIST,
     LAST,
     LOWER,
     MIDDLES,
+    ONE_ELBOW,
     ONE_SHOULDER,
     ONE_WRIST,
     SCALE,
     UPPER,
     axis,
     beside,
-    elbow,
     goal_of,
     in_plane,
     minus,
@@ -40,8 +41,8 @@ from nao_kin.analytic.six_r_kernel import (
     store,
     turn_between,
 )
-from nao_kin.analytic.triangle import FAR, ROUNDING
-from nao_kin.kernels.compiling import jit, parallel_jit, prange
+from nao_kin.analytic.triangle import FAR, NONE, ROUNDING, TWO, bend
+from nao_kin.kernels.compiling import jit, leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import Three, cross, dot, turned, turned_about, turned_back
 from nao_kin.kernels.trigonometry import sine_cosine
 
@@ -192,7 +193,7 @@ def _plane(
     """
     whole = _whole_turn(arm, G, first, fifth, q6)
     s, c = sine_cosine(whole + arm[LAST + 1])
-    number, q2, q3, other2, other3, sine, bits = elbow(arm, seen[0] - c * arm[LAST], seen[1] - s * arm[LAST], slack)
+    number, q2, q3, other2, other3, sine, bits = _elbow(arm, seen[0] - c * arm[LAST], seen[1] - s * arm[LAST], slack)
     q1, q5, start = -math.atan2(first[1], first[0]), math.atan2(fifth[1], fifth[0]), count
     for bent in range(number):
         if bent == 1:
@@ -259,7 +260,7 @@ def _spherical(
     clear: float,
 ) -> int:
     """Writes the branches of one first joint of a spherical wrist: elbow, then the wrist; arguments as `_plane` has."""
-    number, q2, q3, other2, other3, sine, bits = elbow(arm, seen[0], seen[1], slack)
+    number, q2, q3, other2, other3, sine, bits = _elbow(arm, seen[0], seen[1], slack)
     for bent in range(number):
         if bent == 1:
             q2, q3 = other2, other3
@@ -305,3 +306,29 @@ def _wrist(
 def _seen_from_forearm(arm: Floats, G: Placed, first: Two, c: float, s: float, v: Three) -> Three:
     """A direction of the last link in the third joint's link."""
     return turned_about(axis(arm, 1), c, -s, turned_about(axis(arm, 0), first[0], first[1], turned(G[0], v)))
+
+
+@leaf_jit
+def _elbow(arm: Floats, x: float, y: float, slack: float) -> tuple[int, float, float, float, float, float, int]:
+    """The second and third joint whose links end at a point of the plane.
+
+    Args:
+        arm: The arm.
+        x: The point from the second joint [m].
+        y: The same.
+        slack: How far beyond the border will do [m].
+
+    Returns:
+        How many solutions there are; second and third joint of the first, and of the other one [rad]; sine of the bend;
+        bits of the singularity.
+    """
+    a, b, distance = arm[UPPER], arm[LOWER], math.sqrt(x * x + y * y)
+    number, t, sine, cosine = bend(a, b, distance, max(slack, ROUNDING * arm[SCALE]))
+    if number == NONE:
+        return 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    lean, free = math.atan2(b * sine, a + b * cosine), 0 if number == TWO else ONE_ELBOW
+    towards = math.atan2(y, x)
+    if distance <= ROUNDING * arm[SCALE]:  # the links fold on each other, and any second joint will do
+        lean, towards, free = 0.0, arm[MIDDLES + 1] + arm[UPPER + 1], free | ANY_ELBOW
+    q2, q3 = towards - arm[UPPER + 1], arm[UPPER + 1] - arm[LOWER + 1]
+    return 2 if number == TWO else 1, q2 - lean, q3 + t, q2 + lean, q3 - t, sine, free

@@ -1,4 +1,4 @@
-"""What the compiled closed forms of six-joint arms share: the goal, shoulder and elbow, polishing, writing a solution.
+"""What the compiled closed forms of six-joint arms share: the goal, the shoulder, polishing, writing a solution.
 
 An arm is read as six screws at q = 0, in base axes: with G = T_base_tip(q) · T_base_tip(0)⁻¹,
 
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from nao_kin.analytic.triangle import NONE, ROUNDING, TWO, bend
+from nao_kin.analytic.triangle import ROUNDING
 from nao_kin.kernels.compiling import jit, leaf_jit
 from nao_kin.kernels.extended import refine
 from nao_kin.kernels.linear import add_to_diagonal, solve_positive, times_own_transpose, transpose_times
@@ -338,29 +338,3 @@ def refined(arm: Floats, goal: Floats, rows: Floats, count: int) -> int:
             for k in range(6):
                 rows[row, k] = wrapped(rows[row, k])
     return count
-
-
-@leaf_jit
-def elbow(arm: Floats, x: float, y: float, slack: float) -> tuple[int, float, float, float, float, float, int]:
-    """The second and third joint whose links end at a point of the plane.
-
-    Args:
-        arm: The arm.
-        x: The point from the second joint [m].
-        y: The same.
-        slack: How far beyond the border will do [m].
-
-    Returns:
-        How many solutions there are; second and third joint of the first, and of the other one [rad]; sine of the bend;
-        bits of the singularity.
-    """
-    a, b, distance = arm[UPPER], arm[LOWER], math.sqrt(x * x + y * y)
-    number, t, sine, cosine = bend(a, b, distance, max(slack, ROUNDING * arm[SCALE]))
-    if number == NONE:
-        return 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    lean, free = math.atan2(b * sine, a + b * cosine), 0 if number == TWO else ONE_ELBOW
-    towards = math.atan2(y, x)
-    if distance <= ROUNDING * arm[SCALE]:  # the links fold on each other, and any second joint will do
-        lean, towards, free = 0.0, arm[MIDDLES + 1] + arm[UPPER + 1], free | ANY_ELBOW
-    q2, q3 = towards - arm[UPPER + 1], arm[UPPER + 1] - arm[LOWER + 1]
-    return 2 if number == TWO else 1, q2 - lean, q3 + t, q2 + lean, q3 - t, sine, free

@@ -13,7 +13,7 @@ from nao_kin.analytic.certifying import MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.free_joint import values_of
 from nao_kin.analytic.matching import Matched, matched
-from nao_kin.chain import configuration
+from nao_kin.chain import configuration, value_unit
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.target import Target, TargetLike
@@ -64,16 +64,21 @@ class Solutions(tuple[IKResult, ...]):
         return "\n  ".join([*lines, *(f"{result.branch or 'the only one'}: {result!r}" for result in self)]) + ">"
 
     def table(self, title: str = "") -> Table:
-        """One column a solution: its joints [rad or m]; below, the status and branch of each."""
-        names = self[0].problem.chain.joint_names if self else ()
-        columns = (Column("joint"), *(Column(f"#{i + 1}", number=True) for i in range(len(self))))
+        """One column a solution, with its joints' values; below, the status and branch of each."""
+        joints = self[0].problem.chain.joints if self else ()
+        names = tuple(joint.name for joint in joints)
+        columns = (
+            Column(f"joint [{value_unit(joints)}]"),
+            *(Column(f"#{i + 1}", number=True) for i in range(len(self))),
+        )
         digits = 6 if len(self) <= _FEW else 4
         rows = tuple((name, *(f"{result.q[k]:.{digits}f}" for result in self)) for k, name in enumerate(names))
         told = [f"#{i + 1} {r.status.name}: {r.branch or 'the only one'}." for i, r in enumerate(self)]
         return Table(columns, rows, title=title, note="\n".join([*told, self.reason]).strip())
 
     def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
+        chain = f" of {self[0].problem.chain.name}" if self else ""
+        return self.table(f"{len(self)} solutions{chain}, {len(self.solved)} within limits")._repr_html_()
 
 
 def solve_all(
@@ -222,6 +227,9 @@ def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
     Args:
         results: What `solve_all` returned.
         q: Joints to come from (n,) [rad or m].
+
+    Returns:
+        One of the results, as it is.
 
     Raises:
         InvalidInputError: No result at all, or q of a wrong length or not finite.

@@ -93,7 +93,7 @@ class Report:
     def of(
         cls, paths: Iterable[str], findings: Iterable[Finding], incomplete: Iterable[tuple[str, str]] = ()
     ) -> Report:
-        """A report of findings in any order."""
+        """A report on the paths, of findings in any order; `incomplete` as in the attribute."""
         unique = {finding.order: finding for finding in findings}
         return cls(tuple(paths), tuple(unique[key] for key in sorted(unique)), tuple(sorted(set(incomplete))))
 

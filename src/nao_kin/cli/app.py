@@ -32,7 +32,11 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "check": {"short_help": "Defects of URDF files, with lines; for CI."},
     "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
-    "html": {"short_help": "One HTML page that shows a robot."},
+    "workspace": {"short_help": "A map of where a tip can be."},
+    "walk": {"short_help": "A hexapod's walk: gait, speed, margins."},
+    "play": {"short_help": "Keyframes as a motion, within limits."},
+    "html": {"short_help": "One HTML page of a robot, postures or a motion."},
+    "trajectory": {"short_help": "Motions over time: plan, run, show."},
     "warmup": {"short_help": "Compile ahead what later calls need."},
     "bench": {"short_help": "Speed and success as ratios within one run."},
 }

@@ -60,9 +60,9 @@ def compare(
     else:
         report(found.table(), *(["", str(found.explanation)] if explain else []))
     if html is not None:
-        from nao_kin.view.export import export_comparison
+        from nao_kin.view.export import export_html
 
-        typer.echo(f"wrote {export_comparison(html, found, explain=explain)}", err=True)
+        typer.echo(f"wrote {export_html(html, found, explain=explain)}", err=True)
     if corrected is not None:
         _write_corrected(found, corrected)
     if not found.agrees:

@@ -35,7 +35,7 @@ def ik(
     lock: Annotated[list[str] | None, typer.Option(help="With --all, NAME=VALUE, repeated: a joint's value.")] = None,
     redundancy: Annotated[str | None, typer.Option(help="With --all, the joint of which to sample values.")] = None,
     samples: Annotated[int, typer.Option(min=2, help="How many values of --redundancy.")] = 64,
-    html: Annotated[str | None, typer.Option(help="Write a page that shows the solution.")] = None,
+    html: Annotated[str | None, typer.Option(help="Write a page: the solution and the way to it, or all.")] = None,
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """Inverse kinematics: joints that bring the tip to a position, a pose, or where a posture has it."""
@@ -52,7 +52,7 @@ def ik(
         return
     if lock or redundancy:
         raise typer.BadParameter("--lock and --redundancy go with --all.")
-    result = solve(path, target, method=method, seed=seed)
+    result = solve(path, target, method=method, seed=seed, trace=html is not None)
     if format is OutputFormat.json:
         report_json(result_data(result))
     else:
@@ -61,7 +61,7 @@ def ik(
     if html is not None:
         from nao_kin.view.export import export_html
 
-        typer.echo(f"wrote {export_html(html, model, model.complete(result.posture))}", err=True)
+        typer.echo(f"wrote {export_html(html, result)}", err=True)
     if not result.solved:
         raise typer.Exit(1)
 
@@ -71,14 +71,18 @@ def _every_solution(
 ) -> None:
     from nao_kin.analytic.solutions import solve_all
 
-    if html is not None:
-        raise typer.BadParameter("--html shows one solution; leave out --all.")
     solutions = solve_all(path, target, **options)
     if format is OutputFormat.json:
         data = [result_data(result) | {"branch": result.branch} for result in solutions]
         report_json({"chain": path.name, "reason": solutions.reason, "solutions": data})
     else:
         report(solutions.table(f"{path.name}: {path.base} → {path.tip}, {len(solutions)} solutions"))
+    if html is not None and solutions:
+        from nao_kin.view.export import export_html
+
+        typer.echo(f"wrote {export_html(html, solutions)}", err=True)
+    elif html is not None:
+        typer.echo(f"nao-kin: there is no solution to show, so {html} is not written.", err=True)
     if not solutions.solved:
         raise typer.Exit(1)
 

@@ -6,13 +6,13 @@ import json
 import os
 import sys
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+from nao_kin.progress import progress
 
+if TYPE_CHECKING:
     from nao_kin.table import Table
 
 __all__ = [
@@ -25,9 +25,6 @@ __all__ = [
     "rows_of_numbers",
     "wants_colour",
 ]
-
-
-T = TypeVar("T")
 
 
 class OutputFormat(StrEnum):
@@ -62,17 +59,6 @@ def wants_colour() -> bool:
 def report_json(data: Any) -> None:
     """Prints JSON on standard output; numbers that JSON has no word for become null."""
     typer.echo(json.dumps(_plain(data), indent=2, allow_nan=False, ensure_ascii=False))
-
-
-def progress(items: Iterable[T], what: str, total: int) -> Iterator[T]:
-    """Passes the items on, with a progress bar on standard error where that is a terminal."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    from rich.console import Console
-    from rich.progress import track
-
-    yield from track(items, description=what, total=total, console=Console(stderr=True), transient=True)
 
 
 def rows_of_numbers(matrix: Any, indent: str = "  ") -> str:

@@ -38,9 +38,9 @@ class Comparison:
         tolerances: When they count as the same.
         samples: Number of configurations compared, 0 and the ends of the ranges among them.
         max_position_error: Largest distance of the two tips [m].
-        worst_position_q: Where it is (n,).
+        worst_position_q: Where it is (n,) [rad or m].
         max_rotation_error: Largest angle between the two tips [rad].
-        worst_rotation_q: Where it is (n,).
+        worst_rotation_q: Where it is (n,) [rad or m].
         max_linear_jacobian_error: Largest difference of an entry of the linear rows of the two Jacobians [m/rad; 1].
         max_angular_jacobian_error: The same for the angular rows [1; rad/m].
         first_departure: The first joint at which they part; None if they agree.
@@ -185,6 +185,9 @@ def compare(
         samples: Number of random configurations.
         seed: For the generator; the same seed gives the same result.
         tolerances: When they count as the same.
+
+    Returns:
+        Errors of the tip and where they are largest; it explains itself on request.
 
     Raises:
         InvalidInputError: Different numbers of joints, no sample asked for, or a negative seed.

@@ -72,6 +72,12 @@ DOCUMENT_CHAINS: Final[dict[str, DocumentChain]] = {
 def document_chain(name: str) -> DHChain:
     """A chain of the source documents, as printed.
 
+    Args:
+        name: One of `document_chain_names`.
+
+    Returns:
+        The table, converted to metres and radians, in the convention that its document names.
+
     Raises:
         UnknownNameError: There is none of that name; carries near matches.
     """

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
+from nao_kin.table import Column, Table
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -194,6 +196,19 @@ class Judgement:
             "command": claim.command,
         }
 
+    def table(self) -> Table:
+        """The same for people, two columns; what is empty is left out."""
+        told = {key.replace("_", " "): value for key, value in self.row().items() if value not in ("", None)}
+        rows = tuple((key, f"{value:.3g}" if isinstance(value, float) else str(value)) for key, value in told.items())
+        return Table((Column("what"), Column("value")), rows, title=f"{self.claim.id}: {self.verdict}")
+
+    def __repr__(self) -> str:
+        measured = "" if self.measured is None else f", residual {self.measured.residual:.2g} {self.claim.unit}"
+        return f"<Judgement {self.claim.id}: {self.verdict}{measured}>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
     @property
     def reason(self) -> str:
         """What the correction does, why there is none, or why there is nothing to check; empty for what holds."""
@@ -204,23 +219,52 @@ class Judgement:
         return self.claim.correction.why if self.claim.correction else self.claim.uncorrectable
 
 
+class _Watched:
+    """A form that remembers the error it raised, so that one of the check's own is not taken for it."""
+
+    def __init__(self, form: Form) -> None:
+        self.form = form
+        self.raised: Exception | None = None
+
+    def __call__(self, *arguments: Any, **options: Any) -> Any:
+        try:
+            return self.form(*arguments, **options)
+        except Exception as error:
+            self.raised = error
+            raise
+
+
+def _measured(check: Check, form: Form) -> Measured:
+    """What a check finds of a form; one that raises has no value there, which is infinitely far from any."""
+    watched = _Watched(form)
+    try:
+        return check(watched)
+    except Exception as error:
+        if error is not watched.raised:
+            raise  # the check is at fault, and its claim must not be judged by that
+        return Measured(math.inf, 1, f"no value: {type(error).__name__}: {error}")
+
+
 def judged(claim: Claim, form: Form | None = None) -> Judgement:
     """Runs a claim and says what follows.
 
     Args:
         claim: Which.
         form: Put in place of the printed form, to judge a spoilt copy of it.
+
+    Raises:
+        Exception: Whatever the check itself raises. A form that raises fails instead.
     """
     if claim.not_checkable:
         return Judgement(claim, Verdict.not_checkable, None)
     tried = claim.printed if form is None else form
     # A form outside its domain gives nan, which is a finding; numpy's warning about it says nothing more.
     with np.errstate(all="ignore"):
-        plain = claim.check(tried)
+        plain = _measured(claim.check, tried)
         if plain.residual <= claim.tolerance:
             return Judgement(claim, Verdict.holds, plain)
         for name, check in claim.conventions.items():
-            read = check(tried)
+            read = _measured(check, tried)
             if read.residual <= claim.tolerance:
                 return Judgement(claim, Verdict.holds_under_convention, read, name, plain)
         return Judgement(claim, Verdict.fails, plain, corrected=_corrected(claim))

@@ -106,6 +106,9 @@ class Ledger:
         parts += [f"{counts[Verdict.fails]} fail", f"{counts[Verdict.not_checkable]} cannot be checked"]
         return f"{len(self)} printed statements: {', '.join(parts)}."
 
+    def __repr__(self) -> str:
+        return f"<Ledger of {self.summary}>"
+
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
 
@@ -141,6 +144,9 @@ def ledger(claim: str | None = None, *, document: str | None = None, failing: bo
         claim: Only this one, for example ``"000:3.3.0.2"``.
         document: Only those of this document, for example ``"000"``.
         failing: Only those that fail as printed.
+
+    Returns:
+        One judgement a claim, in the order of the documents.
 
     Raises:
         UnknownNameError: There is no such claim or document; carries near matches.

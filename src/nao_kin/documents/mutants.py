@@ -96,8 +96,8 @@ class Trial:
 
     Attributes:
         mutant: The copy.
-        caught: Whether it is judged to fail, or has no value at all.
-        how: Its verdict, or the error that it raised.
+        caught: Whether its verdict is that it fails.
+        how: Its verdict, or the error that its check raised.
     """
 
     mutant: Mutant
@@ -133,7 +133,7 @@ def tried(mutant: Mutant) -> Trial:
         with _time_limit():
             verdict = judged(mutant.claim, mutant.form).verdict
     except Exception as error:
-        return Trial(mutant, True, type(error).__name__)
+        return Trial(mutant, False, type(error).__name__)  # the check broke, which is no verdict on the copy
     return Trial(mutant, verdict is Verdict.fails, str(verdict))
 
 

@@ -64,9 +64,9 @@ def newton_on(valley: bool, derivatives: slice) -> Callable[[Form], Measured]:
     def check(form: Form) -> Measured:
         rng, off = np.random.default_rng(_SEED), []
         for _ in range(_COUNT):
-            c, bend, lift = rng.uniform(-2.0, 2.0), rng.uniform(0.1, 0.5), rng.uniform(0.1, 1.0)
+            c, bend, scale = rng.uniform(-2.0, 2.0), rng.uniform(0.1, 0.5), rng.uniform(0.1, 1.0)
             x = c + rng.uniform(0.05, 0.3)
-            functions = (_valley(c, bend, lift) if valley else _rising(c, bend))[derivatives]
+            functions = (_valley if valley else _rising)(c, bend, scale)[derivatives]
             for _ in range(10):
                 x = form(x, *functions)
             off.append(x - c)
@@ -75,10 +75,11 @@ def newton_on(valley: bool, derivatives: slice) -> Callable[[Form], Measured]:
     return check
 
 
-def _rising(c: float, bend: float) -> tuple[Callable[[float], float], ...]:
+def _rising(c: float, bend: float, slope: float) -> tuple[Callable[[float], float], ...]:
+    # With a slope of 1 at the zero, dividing by f′ and multiplying with it would lead there equally fast.
     return (
-        lambda x: (x - c) + bend * (x - c) ** 3,
-        lambda x: 1.0 + 3.0 * bend * (x - c) ** 2,
+        lambda x: slope * (x - c) + bend * (x - c) ** 3,
+        lambda x: slope + 3.0 * bend * (x - c) ** 2,
         lambda x: 6.0 * bend * (x - c),
     )
 

@@ -77,7 +77,7 @@ class BatchResult:
 
     @classmethod
     def blank(cls, chain: Chain, count: int) -> BatchResult:
-        """Room for so many rows, not yet written."""
+        """Room for a count of rows of a chain, not yet written."""
         return cls(
             chain,
             np.empty((count, len(chain.joints))),

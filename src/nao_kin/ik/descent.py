@@ -225,9 +225,8 @@ def _descend(
         reached = reached or within
         if reached and (merit <= POLISHED or merit >= previous):
             return SOLVED
-        previous, waited = merit, waited + 1
-        if merit < 0.5 * halved:
-            halved, waited = merit, 0
+        previous, waited = merit, 0 if merit < 0.5 * halved else waited + 1
+        halved = merit if waited == 0 else halved
         if waited >= (min(settings[PATIENCE], PATIENCE_ONCE_REACHED) if reached else settings[PATIENCE]):
             return SOLVED if reached else STALLED
         if iteration == allowed:
@@ -243,9 +242,8 @@ def _descend(
             continue
         else:
             propose(joints, limits, coupled, settings, goal, q, step, axes, tip, raw, full, e, J, y, A, memory)
-        if not take_step(step, settings[LARGEST_STEP], q):
+        if not take_step(step, settings[LARGEST_STEP], limits, coupled, q):
             return NOT_FINITE
-        move_inside(q, limits, coupled)
         outcome[ITERATIONS] += 1.0
     return SOLVED if reached else BUDGET_SPENT
 

@@ -79,8 +79,7 @@ def _keep_better(
     for row in range(2):
         for k in range(q.shape[0]):
             trial[k] = q[k]
-        if take_step(steps[row], settings[LARGEST_STEP], trial):
-            move_inside(trial, limits, coupled)
+        if take_step(steps[row], settings[LARGEST_STEP], limits, coupled, trial):
             place(joints, trial, axes, tip)
             raw_error(int(settings[KIND]), goal, tip, raw)
             merit = weighted_merit(settings, raw)
@@ -111,8 +110,11 @@ def _ratio(error: float, tolerance: float) -> float:
 
 
 @leaf_jit
-def take_step(step: Floats, largest_step: float, q: Floats) -> bool:
-    """Adds the step to q, scaled down to the largest one allowed; False, and q as it was, where it is not finite."""
+def take_step(step: Floats, largest_step: float, limits: Floats, coupled: Floats, q: Floats) -> bool:
+    """Adds the step to q, scaled down to the largest one allowed, and moves q inside its limits.
+
+    False, and q as it was, where the step is not finite.
+    """
     largest, nothing = 0.0, 0.0
     for k in range(q.shape[0]):
         largest = max(largest, abs(step[k]))
@@ -122,4 +124,5 @@ def take_step(step: Floats, largest_step: float, q: Floats) -> bool:
     scale = largest_step / largest if largest > largest_step else 1.0
     for k in range(q.shape[0]):
         q[k] += scale * step[k]
+    move_inside(q, limits, coupled)
     return True

@@ -76,7 +76,7 @@ class Target:
 
     @classmethod
     def position(cls, p_base: ArrayLike, weights: WeightsLike = None) -> Target:
-        """A position (3,) [m], in any orientation.
+        """A position p_base (3,) [m] with weights of its axes, in any orientation.
 
         Raises:
             InvalidInputError: Not three finite numbers, or bad weights.
@@ -87,7 +87,7 @@ class Target:
 
     @classmethod
     def orientation(cls, R_base_target: ArrayLike, weights: WeightsLike = None) -> Target:
-        """An orientation, a rotation matrix (3, 3), at any position.
+        """An orientation, a rotation matrix R_base_target (3, 3), with weights of its axes, at any position.
 
         Raises:
             InvalidInputError: Not a rotation (the message gives the size of the violation), or bad weights.
@@ -143,7 +143,7 @@ class Target:
 
     @property
     def T_base_target(self) -> pin.SE3:  # noqa: N802 - a transform's name says both frames
-        """The placement, a copy; the parts that the kind leaves free are identity."""
+        """The placement in the base frame, a copy; the parts that the kind leaves free are identity."""
         rotation = np.eye(3) if self.kind in ("position", "pointing") else self.goal[:3, :3].copy()
         return pin.SE3(rotation, self.goal[:3, 3].copy())
 

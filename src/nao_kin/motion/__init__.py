@@ -1,1 +1,1 @@
-"""Moving a whole robot: what several chains do together."""
+"""Moving a whole robot: several chains together, servos, a guard against collisions, and a loop in real time."""

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain, OutsideLimit
 
-__all__ = ["FeetResult", "both_feet"]
+__all__ = ["FeetResult", "both_feet", "wanted_angles"]
 
 _BESIDE: Final = 1e-9  # [m] an ankle this near to the plane of the thigh is in it
 _ANGLE_RESOLUTION: Final = 1e-10  # [rad] to which the shared angle is found
@@ -139,22 +139,46 @@ def both_feet(
         InvalidInputError: Not poses, chains that are no such legs of one torso, or weights below 0 or both 0.
         UnknownNameError: `near` names a joint of neither leg.
     """
-    if left.base_name != right.base_name:
-        raise InvalidInputError("legs", "two legs of one torso", f"the bases {left.base_name} and {right.base_name}")
     weight = np.asarray(weights, dtype=np.float64)
     if weight.shape != (2,) or not (weight >= 0.0).all() or not 0.0 < weight.sum() < math.inf:
         raise InvalidInputError("weights", "two numbers ≥ 0, not both 0", repr(weights))
-    for name in near or ():
-        if name not in left.joint_names + right.joint_names:
-            raise UnknownNameError("joint", name, left.joint_names + right.joint_names, "near")
-    feet = (
-        _Foot.of("left", left, as_pose(T_base_left, "T_base_left"), near, tolerances),
-        _Foot.of("right", right, as_pose(T_base_right, "T_base_right"), near, tolerances),
-    )
+    feet = _feet(left, right, T_base_left, T_base_right, near, tolerances)
     wanted = _wanted(feet)
     shared = _best_angle(feet, wanted, weight)
     results = [foot.judged(foot.at(shared)) for foot in feet]
     return FeetResult(results[0], results[1], shared, wanted)
+
+
+def wanted_angles(
+    left: Chain, right: Chain, T_base_left: PoseLike, T_base_right: PoseLike, near: Mapping[str, float] | None = None
+) -> tuple[float, float]:
+    """The angles of the shared joint that the left and the right foot want [rad]; both feet are met if they agree.
+
+    A foot out of reach wants the angle of the pose that comes nearest.
+
+    Raises:
+        InvalidInputError, UnknownNameError: See `both_feet`.
+    """
+    return _wanted(_feet(left, right, T_base_left, T_base_right, near, TOLERANCES))
+
+
+def _feet(
+    left: Chain,
+    right: Chain,
+    T_base_left: PoseLike,
+    T_base_right: PoseLike,
+    near: Mapping[str, float] | None,
+    tolerances: Tolerances,
+) -> tuple[_Foot, _Foot]:
+    if left.base_name != right.base_name:
+        raise InvalidInputError("legs", "two legs of one torso", f"the bases {left.base_name} and {right.base_name}")
+    for name in near or ():
+        if name not in left.joint_names + right.joint_names:
+            raise UnknownNameError("joint", name, left.joint_names + right.joint_names, "near")
+    return (
+        _Foot.of("left", left, as_pose(T_base_left, "T_base_left"), near, tolerances),
+        _Foot.of("right", right, as_pose(T_base_right, "T_base_right"), near, tolerances),
+    )
 
 
 @dataclass(frozen=True, eq=False, slots=True)

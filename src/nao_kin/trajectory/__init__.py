@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from nao_kin.trajectory.trajectory import Trajectory
+from nao_kin.trajectory.trapezoid import Trapezoid
 
-__all__ = ["Trajectory"]
+__all__ = ["Trajectory", "Trapezoid"]

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nao_kin.arrays import frozen, rows, vector
-from nao_kin.chain import ChainJoint
+from nao_kin.chain import ChainJoint, limit_text, value_unit
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -88,6 +89,16 @@ class Trajectory:
         speeds: Floats = np.diff(self.q, axis=0) / np.diff(self.times)[:, None]
         return speeds
 
+    @property
+    def accelerations(self) -> Floats:
+        """Change of speed at each sample between two others, (N − 2, n) [rad/s² or m/s²].
+
+        It is spread over half of either step: to be had where the samples lie on a smooth motion.
+        """
+        steps = np.diff(self.times)
+        changes: Floats = 2.0 * np.diff(self.velocities, axis=0) / (steps[:-1] + steps[1:])[:, None]
+        return changes
+
     def at(self, time: float) -> Floats:
         """Joint values (n,) at an instant [s], between samples on the straight line, at both ends held."""
         return np.array([np.interp(time, self.times, column) for column in self.q.T])
@@ -111,3 +122,24 @@ class Trajectory:
         if joint not in self.joint_names:
             raise UnknownNameError("joint", joint, self.joint_names, self.name)
         return self.q[:, self.joint_names.index(joint)]
+
+    def table(self) -> Table:
+        """One row a joint: where it starts and ends, what it covers, and its greatest speed beside the allowed one."""
+        speeds = np.abs(self.velocities).max(axis=0, initial=0.0)
+        columns = np.stack([self.q[0], self.q[-1], self.q.min(axis=0), self.q.max(axis=0), speeds], axis=1)
+        rows = tuple(
+            (joint.name, *(f"{value:.4g}" for value in numbers), limit_text(joint.max_velocity))
+            for joint, numbers in zip(self.joints, columns.tolist(), strict=True)
+        )
+        unit, speed = value_unit(self.joints), value_unit(self.joints, "/s")
+        headings = [f"{what} [{unit}]" for what in ("start", "end", "least", "greatest")]
+        headings += [f"{what} [{speed}]" for what in ("greatest speed", "allowed")]
+        title = f"{self.name or 'Trajectory'}: {len(self)} samples over {self.duration:.4g} s"
+        return Table((Column("joint"), *(Column(heading, number=True) for heading in headings)), rows, title=title)
+
+    def __repr__(self) -> str:
+        name = f" {self.name}" if self.name else ""
+        return f"<Trajectory{name}: {len(self)} samples of {len(self.joints)} joints over {self.duration:.4g} s>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()

@@ -17,6 +17,12 @@ class ReadLimits:
     mesh_bytes: int = 128 * 1024 * 1024
     """Largest mesh [bytes] handed to a mesh reader."""
 
+    mesh_markup: int = 2_000_000
+    """Most ``<`` in a mesh of XML, which bounds the memory of its tree; a polygon may have an element of its own."""
+
+    material_bytes: int = 1024 * 1024
+    """How much of a material library is read [bytes]: it holds a few numbers a material."""
+
     markup: int = 200_000
     """Most ``<`` in a file, which bounds the elements and so the memory of the tree before it is built."""
 

@@ -1,7 +1,8 @@
-"""Mesh files to trimesh bodies, in memory and without anything they refer to.
+"""Mesh files to trimesh bodies, in memory and without the pictures and files they refer to.
 
 A mesh file is as untrusted as the URDF that names it. It is read as bytes, of a known format and a bounded size, and
-parsed without a resolver: no texture, no material library, no external entity.
+parsed without what it refers to: no picture, no external entity. The one exception is the material library of an OBJ
+file, which holds its colours, and only where that lies in or below the file's own folder.
 """
 
 from __future__ import annotations
@@ -12,32 +13,32 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nao_kin.urdf.collada import harmless_collada
 from nao_kin.urdf.limits import LIMITS
+from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from nao_kin.arrays import Floats
 
-__all__ = ["FORMATS", "LargeMeshError", "UnreadableMeshError", "read_bodies"]
+__all__ = ["FORMATS", "material_colour", "read_bodies"]
 
 FORMATS = ("dae", "obj", "off", "ply", "stl")
 """Formats that carry their geometry in one file and no pictures, by suffix."""
 
 
-class UnreadableMeshError(ValueError):
-    """A mesh file cannot be read; the text is the reason."""
-
-
-class LargeMeshError(UnreadableMeshError):
-    """A mesh file is larger than is read here, which says nothing against it."""
-
-
 def read_bodies(path: Path) -> list[tuple[Any, Floats]]:
     """The bodies of a mesh file that have faces, each with the transform (4, 4) from its own units to the file, in [m].
 
-    COLLADA's `<unit>` is applied and its `<up_axis>` is not, as the common URDF viewers do. Bodies are
-    `trimesh.Trimesh`; the list is empty where the file holds no triangles.
+    COLLADA's `<unit>` is applied and its `<up_axis>` is not. A mesh in a URDF counts in the frame of its visual, and
+    the consumers that robots are made for take the coordinates as they stand: RViz and MoveIt clear the turn that
+    Assimp adds, Gazebo Classic never looks at the element. Robot files depend on it: TIAGo's `Y_UP` collision meshes
+    cover its visual STL files only unturned. (What follows the letter of COLLADA, as the loader of newer versions of
+    three.js does, turns such robots on their backs.)
+
+    Bodies are `trimesh.Trimesh`; the list is empty where the file holds no triangles. Of their materials,
+    `material_colour` tells what the file says.
 
     Raises:
         UnreadableMeshError: Unknown format, too large, or damaged.
@@ -51,37 +52,42 @@ def read_bodies(path: Path) -> list[tuple[Any, Floats]]:
     if len(content) > LIMITS.mesh_bytes:
         raise LargeMeshError(f"larger than {LIMITS.mesh_bytes} bytes")
     if kind == "dae":
-        content = _harmless_xml(content)
-    return _placed_bodies(_load(content, kind))
+        content = harmless_collada(content)
+    return _placed_bodies(_load(content, kind, _MaterialLibraries(path.parent) if kind == "obj" else None))
 
 
-def _harmless_xml(content: bytes) -> bytes:
-    """The same XML without a way out: parsed with entities off, refused with a DOCTYPE, written anew.
-
-    The COLLADA reader's own parser expands entities without a limit, and takes archives for documents.
-    """
-    from lxml import etree
-
-    parser = etree.XMLParser(resolve_entities=False, load_dtd=False, no_network=True, huge_tree=False)
-    try:
-        root = etree.fromstring(content, parser)
-    except etree.XMLSyntaxError as error:
-        if "XML_PARSE_HUGE" in str(error):
-            raise LargeMeshError("a list of numbers in it is longer than the XML parser reads") from error
-        raise UnreadableMeshError(f"not well-formed XML ({error})") from error
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise UnreadableMeshError("it has a DOCTYPE, which a mesh does not need")
-    return etree.tostring(root)
+def material_colour(material: Any) -> Any | None:
+    """Colour (4,) in 0…255 that a file gives a `trimesh` material; None where it gives none, or a picture."""
+    roughness = getattr(material, "roughnessFactor", None)
+    if roughness is not None:  # of COLLADA
+        return None if roughness > 1.0 else material.main_color  # see `PICTURED`
+    return material.main_color if "kd" in getattr(material, "kwargs", {}) else None  # else the reader's own grey
 
 
-def _load(content: bytes, kind: str) -> Any:
+class _MaterialLibraries:
+    """Resolver that hands out `.mtl` files of one folder and nothing else, however the name leads there."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder.resolve()
+
+    def get(self, name: str) -> bytes:
+        real = (self._folder / name.strip()).resolve()
+        if not real.is_relative_to(self._folder) or real.suffix.lower() != ".mtl" or not real.is_file():
+            raise OSError("no material library beside the mesh")
+        with real.open("rb") as file:
+            return file.read(LIMITS.material_bytes)
+
+    __getitem__ = get
+
+
+def _load(content: bytes, kind: str, resolver: _MaterialLibraries | None) -> Any:
     """The content as a `trimesh.Scene`."""
     import trimesh
 
     log = logging.getLogger("trimesh")
     was_disabled, log.disabled = log.disabled, True  # it complains about each texture we do not let it read
     try:
-        return trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=None, allow_remote=False)
+        return trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=resolver, allow_remote=False)
     except Exception as error:  # the readers of the formats raise whatever they stumble on
         raise UnreadableMeshError(f"not a readable {kind.upper()} file ({type(error).__name__})") from error
     finally:

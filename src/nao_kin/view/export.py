@@ -11,18 +11,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.view.overlay import comparison_scene
+from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
+from nao_kin.view.contents import scene_of
 from nao_kin.view.page import page
-from nao_kin.view.scene import robot_scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
-    from nao_kin.crosscheck import Comparison
-    from nao_kin.robot import Robot
+    from nao_kin.view.contents import Content, Subject
     from nao_kin.view.scene import Scene
 
-__all__ = ["InlinePage", "export_comparison", "export_html", "show"]
+__all__ = ["InlinePage", "export_html", "show"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,70 +49,77 @@ class InlinePage:
         )
 
 
-def export_html(path: str | os.PathLike[str], robot: Robot, posture: Mapping[str, float] | None = None) -> Path:
-    """Write a page that shows a robot in one posture: one file, no server, no network.
+def export_html(
+    path: str | os.PathLike[str],
+    subject: Subject,
+    content: Content | None = None,
+    *,
+    explain: bool = False,
+    max_mb: float = DEFAULT_MAX_MB,
+) -> Path:
+    """Write a page of a robot, a chain, a result or a comparison: one file, no server, no network.
 
-    The page is complete before the file is touched: a failure leaves what was there. The same robot and posture give
-    the same bytes.
+    The page is complete before the file is touched: a failure leaves what was there. The same input gives the same
+    bytes.
 
     Args:
         path: Where to write; an existing file is replaced.
-        robot: The robot.
-        posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
+        subject: A `Robot`; or a chain, an `IKResult`, a `TreeResult`, what `solve_all` or `compare` returned.
+        content: What a robot is shown with: a posture (joint name to angle [rad] or offset [m]; joints not named are
+            at 0), named postures (name to posture, the first one solid and the others as ghosts), a `Trajectory`, a
+            `Walk`, a `ReachMap`, or a result or solutions of one of its chains. None means `robot.neutral`.
+        explain: Whether the page of a comparison says what accounts for the disagreement, which may have to be
+            searched first.
+        max_mb: Largest page [MB]; meshes are simplified to stay below it.
 
     Returns:
         The path written to.
 
     Raises:
-        UnknownNameError: The posture names a joint the robot does not have.
-        InvalidInputError: A value of the posture is not a finite number, or `path` is a directory or a device.
+        UnknownNameError: A posture or trajectory names a joint the robot does not have.
+        InvalidInputError: Nothing that can be shown, a value that is not a finite number, no solutions, `path` is a
+            directory or a device, or `max_mb` is too small for any picture.
         OSError: The file cannot be written.
     """
-    return _written(path, lambda: robot_scene(robot, posture))
+    return _written(path, lambda: scene_of(subject, content, explain=explain), max_mb)
 
 
-def export_comparison(path: str | os.PathLike[str], found: Comparison, *, explain: bool = False) -> Path:
-    """Write a page that shows both chains of a comparison where their tips are farthest apart.
-
-    Args:
-        path: Where to write; an existing file is replaced.
-        found: What `nao_kin.compare` returned.
-        explain: Whether the page says what accounts for the disagreement, which may have to be searched first.
-
-    Returns:
-        The path written to.
-
-    Raises:
-        InvalidInputError: `path` is a directory or a device.
-        OSError: The file cannot be written.
-    """
-    return _written(path, lambda: comparison_scene(found, explain=explain))
-
-
-def show(robot: Robot, posture: Mapping[str, float] | None = None, height: int = 480) -> InlinePage:
+def show(
+    subject: Subject,
+    content: Content | None = None,
+    height: int = 480,
+    *,
+    explain: bool = False,
+    max_mb: float = DEFAULT_MAX_MB,
+) -> InlinePage:
     """The page of `export_html`, inline in a Jupyter notebook.
 
     Args:
-        robot: The robot.
-        posture: Joint name to angle [rad] or offset [m]; joints not named are at 0. None means `robot.neutral`.
+        subject: As for `export_html`.
+        content: As for `export_html`.
         height: Height of the frame in CSS pixels.
+        explain: As for `export_html`.
+        max_mb: As for `export_html` [MB].
+
+    Returns:
+        What Jupyter displays, also after the notebook was saved as HTML.
 
     Raises:
-        UnknownNameError: The posture names a joint the robot does not have.
-        InvalidInputError: A value of the posture is not a finite number, or the height is not positive.
+        UnknownNameError: A posture or trajectory names a joint the robot does not have.
+        InvalidInputError: As `export_html`, or the height is not positive.
     """
     if height <= 0:
         raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
-    scene = robot_scene(robot, posture)
-    return InlinePage(page(scene), scene.title, int(height))
+    scene = scene_of(subject, content, explain=explain)
+    return InlinePage(fitted(scene, max_mb, page), scene.title, int(height))
 
 
-def _written(path: str | os.PathLike[str], scene: Callable[[], Scene]) -> Path:
+def _written(path: str | os.PathLike[str], scene: Callable[[], Scene], max_mb: float) -> Path:
     target = Path(path)
     if target.exists() and not target.is_file():
         kind = "directory" if target.is_dir() else "special file"
         raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
-    _replace(target, page(scene()).encode("utf-8"))
+    _replace(target, fitted(scene(), max_mb, page).encode("utf-8"))
     return target
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from nao_kin.urdf.outline import shown
 from nao_kin.urdf.resources import resolve_mesh
 from nao_kin.view.crease import Indices, split_creases
 from nao_kin.view.mesh_files import Part, UnreadableMeshError, read_parts
+from nao_kin.view.placeholder import COLOUR, label, placeholder_box, sign_corners
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.urdf.elements import Colour, UrdfLink
 
-__all__ = ["DEFAULT_COLOUR", "Mesh", "Triangulator", "triangulate"]
+__all__ = ["DEFAULT_COLOUR", "Mesh", "Sign", "Triangulator", "triangulate"]
 
 DEFAULT_COLOUR = (0.72, 0.75, 0.79, 1.0)
 """Light grey with a hint of blue, for a shape whose file names no colour."""
@@ -36,12 +37,24 @@ SPHERE_SUBDIVISIONS = 3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Sign:
+    """A text to be drawn on squares: corners (N, 4, 3) [m], counter-clockwise from the lower left one."""
+
+    text: str
+    corners: Floats
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
-    """Triangles of one colour: vertices (V, 3) [m], faces (F, 3) indices, colour (r, g, b, a) in 0…1."""
+    """Triangles of one colour: vertices (V, 3) [m], faces (F, 3) indices, colour (r, g, b, a) in 0…1.
+
+    A `sign` is on the box that stands for something that cannot be shown.
+    """
 
     vertices: Floats
     faces: Indices
     colour: Colour
+    sign: Sign | None = None
 
 
 class Triangulator:
@@ -63,34 +76,31 @@ class Triangulator:
         return tuple(self._notes)
 
     def link(self, link: UrdfLink) -> tuple[Mesh, ...]:
-        """All visuals of a link, in the link's frame.
+        """All visuals of a link, in the link's frame, and one labelled box for those that cannot be shown.
 
         A mesh file's own colours win over the colour the URDF names, as in RViz: they tell its parts apart.
         """
-        return tuple(mesh for solid in link.visuals for mesh in self._solid(solid, link.name))
+        shown_meshes: list[Mesh] = []
+        missing: list[Solid] = []
+        for solid in link.visuals:
+            try:
+                shown_meshes.extend(self._solid(solid))
+            except (UrdfError, UnreadableMeshError, OSError) as error:
+                self._notes[_note(link.name, solid, error)] = None
+                missing.append(solid)
+        return (*shown_meshes, *([_placeholder(link, missing)] if missing else []))
 
-    def _solid(self, solid: Solid, link: str) -> tuple[Mesh, ...]:
-        try:
-            match solid.shape:
-                case MeshFile():
-                    parts = self._file(solid.shape)
-                case OtherShape(tag):
-                    raise UnreadableMeshError(f"URDF defines no shape {shown(tag)}")
-                case _:
-                    parts = (_primitive(solid.shape),)
-        except (UrdfError, UnreadableMeshError, OSError) as error:
-            self._notes[_note(link, solid, error)] = None
-            return ()
-        T_link_solid = from_xyz_rpy(solid.origin.xyz, solid.origin.rpy).homogeneous
-        return tuple(
-            Mesh(
-                part.vertices @ T_link_solid[:3, :3].T + T_link_solid[:3, 3],
-                part.faces,
-                part.colour or solid.colour or DEFAULT_COLOUR,
-            )
-            for part in parts
-            if len(part.faces)
-        )
+    def _solid(self, solid: Solid) -> list[Mesh]:
+        match solid.shape:
+            case MeshFile():
+                parts = self._file(solid.shape)
+            case OtherShape(tag):
+                raise UnreadableMeshError(f"URDF defines no shape {shown(tag)}")
+            case _:
+                parts = (_primitive(solid.shape),)
+        T_link_solid = np.asarray(from_xyz_rpy(solid.origin.xyz, solid.origin.rpy).homogeneous)
+        colour = solid.colour or DEFAULT_COLOUR
+        return [_placed(part, T_link_solid, part.colour or colour) for part in parts if len(part.faces)]
 
     def _file(self, shape: MeshFile) -> tuple[Part, ...]:
         path = resolve_mesh(shape.filename, self._directory, self._roots)
@@ -130,6 +140,16 @@ def _primitive(shape: Box | Cylinder | Sphere) -> Part:
     if largest > LARGEST:
         raise UnreadableMeshError(f"it is larger than {LARGEST / 1000:g} km")
     return triangulate(shape)
+
+
+def _placed(part: Part, pose: Floats, colour: Colour) -> Mesh:
+    return Mesh(part.vertices @ pose[:3, :3].T + pose[:3, 3], part.faces, colour)
+
+
+def _placeholder(link: UrdfLink, missing: Sequence[Solid]) -> Mesh:
+    box, T_link_box = placeholder_box(link.inertial, missing[0])
+    corners = sign_corners(box.size) @ T_link_box[:3, :3].T + T_link_box[:3, 3]
+    return replace(_placed(triangulate(box), T_link_box, COLOUR), sign=Sign(label(missing), corners))
 
 
 def _scaled(part: Part, scale: tuple[float, float, float]) -> Part:

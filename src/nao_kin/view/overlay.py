@@ -1,61 +1,107 @@
-"""Two chains in one picture: where a comparison found their tips farthest apart."""
+"""Two chains in one picture: where a comparison found their tips farthest apart, and wherever its sliders go."""
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.view.meshes import Mesh
-from nao_kin.view.scene import Node, Panel, Scene, robot_scene
+from nao_kin.view.figure import chain_figure, rod_radius
+from nao_kin.view.robot_scene import robot_scene
+from nao_kin.view.scene import Node, Panel, Rod, Scene, SceneChain, SceneJoint
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
     from nao_kin.crosscheck import Comparison
     from nao_kin.robot import Robot
     from nao_kin.urdf.elements import Colour
+    from nao_kin.view.meshes import Mesh
 
-__all__ = ["comparison_scene"]
+__all__ = ["FAINT", "FIRST", "GAP", "SECOND", "chain_scene", "comparison_scene"]
 
 FIRST: Final[Colour] = (0.93, 0.47, 0.07, 1.0)  # orange
 SECOND: Final[Colour] = (0.10, 0.38, 0.85, 1.0)  # blue
 GAP: Final[Colour] = (0.85, 0.08, 0.12, 1.0)  # red
 FAINT: Final = 0.22  # opacity of the robot's own shapes
-ROD: Final = 0.008  # radius of a rod next to the length of the chain
-BALL: Final = 2.2  # radius of a joint next to that of a rod
+THIN: Final = 0.5  # radius of the gap's rod next to that of the chains'
 
 
 def comparison_scene(found: Comparison, *, explain: bool = False) -> Scene:
-    """Both chains as stick figures at the joints where their tips are farthest apart, the gap between them in red.
+    """Both chains as stick figures at the joints where their tips are farthest apart, the gaps between them in red.
 
-    A stick runs through the origins of the link frames, which each convention places in its own way, and ends at the
-    tip. Where the second chain belongs to a robot, its shapes are drawn faintly around it.
+    The sliders move both. Where the second chain belongs to a robot, its shapes are drawn faintly around it.
 
     Args:
         found: The comparison.
         explain: Whether to say what accounts for the disagreement, which may have to be searched first.
     """
     q = found.worst_position_q
-    tips = [chain.pose(q).translation for chain in (found.a, found.b)]
-    sticks = [_stick(found.a, q, FIRST), _stick(found.b, q, SECOND), _rods(tips, _radius(found.b, q) * 0.6, GAP)]
-    robot: Robot | None = getattr(found.b, "robot", None)
-    scene = Scene(title="", nodes=(Node("base", None, None, np.eye(4), ()),))
-    T_root_base = np.eye(4)
-    if robot is not None:
-        posture = robot.complete(dict(zip(found.b.joint_names, q.tolist(), strict=True)))
-        scene = robot_scene(robot, posture)
-        T_root_base = np.asarray(robot.pose(posture, found.b.base_name).homogeneous)
-    nodes = [replace(node, meshes=tuple(map(_faint, node.meshes))) for node in scene.nodes]
-    nodes.append(Node("chains", 0, None, T_root_base, tuple(stick for stick in sticks if len(stick.faces))))
+    scene, base = _surroundings(found.b, q.tolist())
+    radius = rod_radius(found.b, q)
+    names = found.b.joint_names
+    a = chain_figure(found.a, base, len(scene.nodes), names, FIRST, radius)
+    b = chain_figure(found.b, base, len(scene.nodes) + len(a.nodes), names, SECOND, radius)
+    gaps = [Rod(start, end, GAP, THIN * radius, measured=True) for start, end in zip(a.frames, b.frames, strict=False)]
+    if a.tip != gaps[-1].start or b.tip != gaps[-1].end:  # chains of different length: the tips belong together
+        gaps[-1] = Rod(a.tip, b.tip, GAP, THIN * radius, measured=True)
     panels = [Panel("Comparison", tuple(_summary(found)), open=True)]
     if explain:
         panels.append(Panel("Explanation", tuple(str(found.explanation).splitlines())))
-    return replace(scene, title=f"{found.a.name} against {found.b.name}", nodes=tuple(nodes), panels=tuple(panels))
+    return replace(
+        scene,
+        title=f"{found.a.name} against {found.b.name}",
+        nodes=(*scene.nodes, *a.nodes, *b.nodes),
+        chains=(SceneChain(found.a.name, base, a.tip), SceneChain(found.b.name, base, b.tip), *scene.chains),
+        rods=(*a.rods, *b.rods, *gaps[1:]),  # the bases coincide
+        framed=(*a.frames, *b.frames[1:]),
+        panels=tuple(panels),
+        produced=f"a comparison at {found.samples} configurations",
+        groups=(("compared", names), *_others(scene, names)),
+        legs=(),
+    )
+
+
+def chain_scene(chain: Chain) -> Scene:
+    """A chain at its neutral joints: as a stick figure, and with its robot's shapes around it where it has a robot."""
+    from nao_kin.chain import neutral
+
+    q = neutral(chain)
+    scene, base = _surroundings(chain, q.tolist())
+    figure = chain_figure(chain, base, len(scene.nodes), chain.joint_names, FIRST, rod_radius(chain, q))
+    return replace(
+        scene,
+        title=chain.name,
+        nodes=(*scene.nodes, *figure.nodes),
+        chains=(SceneChain(chain.name, base, figure.tip), *scene.chains),
+        rods=figure.rods,
+        framed=figure.frames,
+        produced="a chain",
+        groups=(("chain", chain.joint_names), *_others(scene, chain.joint_names)),
+        legs=(),
+    )
+
+
+def _surroundings(chain: Chain, q: list[float]) -> tuple[Scene, int]:
+    """The chain's robot, faint, or the chain's joints alone; and the index of the chain's base frame."""
+    robot: Robot | None = getattr(chain, "robot", None)
+    if robot is not None:
+        posture = robot.complete(dict(zip(chain.joint_names, q, strict=True)))
+        scene = robot_scene(robot, posture)
+        nodes = tuple(replace(node, meshes=tuple(map(_faint, node.meshes))) for node in scene.nodes)
+        return replace(scene, nodes=nodes), [node.label for node in nodes].index(chain.base_name)
+    joints = tuple(
+        SceneJoint(joint.name, joint.kind, value, joint.lower, joint.upper, joint.max_velocity)
+        for joint, value in zip(chain.joints, q, strict=True)
+    )
+    root = Node(chain.base_name, None, None, np.eye(4))
+    return Scene(title="", nodes=(root,), joints=joints, rules=chain.limit_rules), 0
+
+
+def _others(scene: Scene, names: tuple[str, ...]) -> list[tuple[str, tuple[str, ...]]]:
+    """The scene's groups without some joints, and without those that this leaves empty."""
+    left = [(title, tuple(name for name in group if name not in names)) for title, group in scene.groups]
+    return [(title, group) for title, group in left if group]
 
 
 def _summary(found: Comparison) -> list[str]:
@@ -63,41 +109,10 @@ def _summary(found: Comparison) -> list[str]:
     return [
         f"Orange: {found.a.name}.",
         f"Blue: {found.b.name}.",
-        f"Red: the gap between the tips, {found.max_position_error * 1e3:.4g} mm, at the worst of "
+        f"Red: the gaps. That between the tips is {found.max_position_error * 1e3:.4g} mm at the worst of "
         f"{found.samples} configurations. Largest rotation error {found.max_rotation_error:.4g} rad.",
         apart,
     ]
-
-
-def _stick(chain: Chain, q: Floats, colour: Colour) -> Mesh:
-    """Rods from the base through the link frames to the tip."""
-    points = [np.zeros(3), *chain.link_poses(q)[:, :3, 3], chain.pose(q).translation]
-    return _rods(points, _radius(chain, q), colour)
-
-
-def _radius(chain: Chain, q: Floats) -> float:
-    points = np.array([np.zeros(3), *chain.link_poses(q)[:, :3, 3], chain.pose(q).translation])
-    return ROD * max(1e-3, float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))
-
-
-def _rods(points: Sequence[Floats], radius: float, colour: Colour) -> Mesh:
-    """Rods between consecutive points with a ball at each, as one mesh."""
-    import trimesh
-
-    parts = []
-    for start, end in itertools.pairwise(points):
-        if np.linalg.norm(end - start) > 1e-9:
-            parts.append(trimesh.creation.cylinder(radius, segment=[start, end], sections=16))
-    for point in points if parts else ():
-        ball = trimesh.creation.icosphere(2, BALL * radius)
-        ball.apply_translation(point)
-        parts.append(ball)
-    vertices = np.vstack([part.vertices for part in parts]) if parts else np.empty((0, 3))
-    faces, offset = [np.empty((0, 3), dtype=np.int64)], 0
-    for part in parts:
-        faces.append(np.asarray(part.faces) + offset)
-        offset += len(part.vertices)
-    return Mesh(vertices, np.vstack(faces), colour)
 
 
 def _faint(mesh: Mesh) -> Mesh:

@@ -7,6 +7,7 @@ exactly these two scripts, by their hashes, and no connection at all.
 from __future__ import annotations
 
 import base64
+import functools
 import hashlib
 import html
 import importlib.metadata
@@ -15,26 +16,52 @@ import json
 import math
 import re
 import zlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from nao_kin.view.record import recorded
+from nao_kin.view.scene_data import scene_json
 
 if TYPE_CHECKING:
-    from nao_kin.view.scene import JointValue, Panel, Scene
+    from nao_kin.view.scene import Panel, Scene, SceneJoint
 
 __all__ = ["page"]
 
 MINUS = "\N{MINUS SIGN}"
 
+SCRIPT_PARTS: Final = (
+    "data",
+    "matrix",
+    "state",
+    "camera",
+    "stage",
+    "marks",
+    "labels",
+    "elements",
+    "units",
+    "joints",
+    "tip",
+    "postures",
+    "exchange",
+    "chart",
+    "player",
+    "leg",
+    "body",
+    "toolbar",
+    "printing",
+    "main",
+)
+"""Files of the page's script, in the order in which they stand in it."""
+
 
 def page(scene: Scene) -> str:
     """The page, complete. The same scene gives the same text, byte for byte.
 
-    Text of the scene (names, notes) occurs in it only HTML-escaped.
+    Text of the scene (names, notes) occurs in it only HTML-escaped or in compressed data.
     """
-    viewer, script = _viewer_script(), _script_text(_resource("page.js"))
+    viewer, viewer_hash = _viewer()
+    script, script_hash = _own_script()
     policy = (
-        f"default-src 'none'; script-src {_source_hash(viewer)} {_source_hash(script)}; "
+        f"default-src 'none'; script-src {viewer_hash} {script_hash}; "
         "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
     return _filled(
@@ -45,10 +72,11 @@ def page(scene: Scene) -> str:
             "version": html.escape(_version()),
             "style": _resource("page.css"),
             "source": _source(scene),
+            "produced": html.escape(scene.produced),
             "panels": "\n".join(map(_text_panel, scene.panels)),
-            "joints": _joint_panel(scene.joints),
+            "joints": _joint_table(scene.joints),
             "notes": _note_panel(scene.notes),
-            "data": _json_text(_packed(recorded(scene))),
+            "data": _json_text(_packed([scene_json(scene), *recorded(scene)])),
             "viewer": viewer,
             "script": script,
         },
@@ -64,22 +92,20 @@ def _source(scene: Scene) -> str:
     if not scene.source:
         return ""
     digest = html.escape(scene.sha256)
-    short = f' <code title="sha256 {digest}">{digest[:12]}</code>' if digest else ""
-    return f'<p class="source"><span>{html.escape(scene.source)}</span>{short}</p>'
+    short = f', sha256 <code title="{digest}">{digest[:12]}</code>' if digest else ""
+    return f'<p>Robot from <span class="file">{html.escape(scene.source)}</span>{short}</p>'
 
 
-def _joint_panel(joints: tuple[JointValue, ...]) -> str:
-    if not joints:
-        return ""
+def _joint_table(joints: tuple[SceneJoint, ...]) -> str:
+    """For readers without scripts; the page's own makes sliders instead."""
     rows = "\n".join(_joint_row(joint) for joint in joints)
     return (
-        f'<details id="joints"><summary>Joint values <span class="count">{len(joints)}</span></summary>\n'
-        '<div class="scroll"><table><thead><tr><th scope="col">joint</th><th scope="col">rad</th>'
-        f'<th scope="col">deg</th></tr></thead><tbody>\n{rows}\n</tbody></table></div></details>'
+        '<table><thead><tr><th scope="col">joint</th><th scope="col">rad</th>'
+        f'<th scope="col">deg</th></tr></thead><tbody>\n{rows}\n</tbody></table>'
     )
 
 
-def _joint_row(joint: JointValue) -> str:
+def _joint_row(joint: SceneJoint) -> str:
     if joint.kind == "prismatic":
         first, second = f"{_number(joint.value, 4)} m", f"{_number(1e3 * joint.value, 1)} mm"
     else:
@@ -97,8 +123,8 @@ def _number(value: float, digits: int) -> str:
 def _text_panel(panel: Panel) -> str:
     paragraphs = "".join(f"<p>{html.escape(line)}</p>" for line in panel.lines)
     return (
-        f"<details{' open' if panel.open else ''}><summary>{html.escape(panel.title)}</summary>\n"
-        f'<div class="scroll text">{paragraphs}</div></details>'
+        f'<details class="section"{" open" if panel.open else ""}><summary>{html.escape(panel.title)}</summary>\n'
+        f'<div class="text">{paragraphs}</div></details>'
     )
 
 
@@ -107,8 +133,8 @@ def _note_panel(notes: tuple[str, ...]) -> str:
         return ""
     items = "".join(f"<li>{html.escape(note)}</li>" for note in notes)
     return (
-        f'<details id="notes"><summary>Not shown <span class="count">{len(notes)}</span></summary>\n'
-        f'<div class="scroll"><ul>{items}</ul></div></details>'
+        f'<details class="section" id="notes"><summary>Notes <span class="count">{len(notes)}</span></summary>\n'
+        f'<div class="text"><ul>{items}</ul></div></details>'
     )
 
 
@@ -123,13 +149,23 @@ def _json_text(value: object) -> str:
     return json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _viewer_script() -> str:
-    """The viewer that meshcat bundles, behind the licences it comes under."""
+@functools.cache
+def _viewer() -> tuple[str, str]:
+    """The viewer that meshcat bundles, behind the licences it comes under, and its hash for the policy."""
     dist = importlib.resources.files("meshcat") / "viewer"
     licence = (dist / "LICENSE").read_text(encoding="utf-8").replace("*/", "* /").strip()
     notices = (dist / "dist" / "main.min.js.LICENSE.txt").read_text(encoding="utf-8").strip()
     script = (dist / "dist" / "main.min.js").read_text(encoding="utf-8").strip()
-    return _script_text(f"/* meshcat\n\n{licence}\n*/\n{notices}\n{script}")
+    text = _script_text(f"/* meshcat\n\n{licence}\n*/\n{notices}\n{script}")
+    return text, _source_hash(text)
+
+
+@functools.cache
+def _own_script() -> tuple[str, str]:
+    """The page's own script, its parts in one scope, and its hash for the policy."""
+    parts = "\n".join(_resource(f"js/{name}.js") for name in SCRIPT_PARTS)
+    text = _script_text(f'(() => {{\n"use strict";\n{parts}\n}})();')
+    return text, _source_hash(text)
 
 
 def _script_text(script: str) -> str:
@@ -144,6 +180,7 @@ def _source_hash(script: str) -> str:
     return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
+@functools.cache
 def _resource(name: str) -> str:
     return (importlib.resources.files("nao_kin.view") / name).read_text(encoding="utf-8")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
@@ -11,7 +11,6 @@ import pinocchio as pin
 from nao_kin.checks.rules.poses import sample_postures
 from nao_kin.pinocchio_layout import PinocchioLayout
 from nao_kin.se3 import from_xyz_rpy
-from nao_kin.urdf.elements import Box, Cylinder, Sphere
 from nao_kin.urdf.outline import Defect, children, describe, shown
 
 if TYPE_CHECKING:
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
     from nao_kin.robot import Robot
-    from nao_kin.urdf.elements import Shape
 
 __all__ = ["self_collisions"]
 
@@ -60,13 +58,13 @@ class _Solids:
     @classmethod
     def of(cls, robot: Robot) -> _Solids | None:
         """None where there is nothing that could touch, or too much to try."""
-        import coal
+        from nao_kin.collision.shapes import coal_shape  # coal takes a moment to load
 
         model, geometry, links = robot.model, pin.GeometryModel(), list[str]()
         for link in robot.document.links:
             frame = model.frames[model.getFrameId(link.name, pin.FrameType.BODY)]
             for solid in link.collisions:
-                shape = _coal_shape(coal, solid.shape)
+                shape = coal_shape(solid.shape)
                 if shape is not None:
                     T_link_solid = from_xyz_rpy(solid.origin.xyz, solid.origin.rpy)
                     placement = frame.placement * T_link_solid
@@ -107,17 +105,6 @@ class _Solids:
         values = self.robot.expand(posture)
         q = PinocchioLayout.of(model, names).q(np.array([values[name] for name in names]))
         return bool(pin.computeCollisions(model, model.createData(), self.geometry, data, q, stop_at_first))
-
-
-def _coal_shape(coal: Any, shape: Shape) -> Any:
-    match shape:
-        case Box(size) if min(size) > 0.0:
-            return coal.Box(np.array(size))
-        case Cylinder(radius, length) if radius > 0.0 and length > 0.0:
-            return coal.Cylinder(radius, length)
-        case Sphere(radius) if radius > 0.0:
-            return coal.Sphere(radius)
-    return None
 
 
 def _neighbours(model: pin.Model, geometry: pin.GeometryModel) -> set[frozenset[int]]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from nao_kin.checks.subject import numbers
 from nao_kin.errors import UrdfError, near_matches
+from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
 from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_of
 
 if TYPE_CHECKING:
@@ -130,7 +131,7 @@ def _content_defects(mesh: etree._Element, content: _Content) -> Iterator[Defect
 
 
 def _content(path: Path) -> _Content:
-    from nao_kin.urdf.mesh_scene import LargeMeshError, UnreadableMeshError, read_bodies  # trimesh takes a second
+    from nao_kin.urdf.mesh_scene import read_bodies  # trimesh takes a second
 
     try:
         bodies = read_bodies(path)

@@ -8,13 +8,20 @@ from nao_kin.cli.bench.closed import closed
 from nao_kin.cli.bench.edges import edges
 from nao_kin.cli.bench.explain import explain
 from nao_kin.cli.bench.fk import fk
+from nao_kin.cli.bench.gait import gait
+from nao_kin.cli.bench.guard import guard
 from nao_kin.cli.bench.ik import ik
+from nao_kin.cli.bench.loop import loop
 from nao_kin.cli.bench.methods import methods
 from nao_kin.cli.bench.mutants import mutants
+from nao_kin.cli.bench.page import page
 from nao_kin.cli.bench.practicum import practicum
+from nao_kin.cli.bench.reach import reach
+from nao_kin.cli.bench.servo import servo
 from nao_kin.cli.bench.sixr import sixr
 from nao_kin.cli.bench.startup import startup
 from nao_kin.cli.bench.tips import tips
+from nao_kin.cli.bench.trajectory import trajectory
 
 __all__ = ["bench"]
 
@@ -30,10 +37,17 @@ bench.command()(fk)
 bench.command()(ik)
 bench.command()(edges)
 bench.command()(explain)
+bench.command()(guard)
+bench.command()(loop)
+bench.command()(gait)
 bench.command()(methods)
 bench.command()(mutants)
+bench.command()(page)
 bench.command()(practicum)
 bench.command()(closed)
+bench.command()(servo)
 bench.command()(sixr)
+bench.command()(reach)
 bench.command()(startup)
 bench.command()(tips)
+bench.command()(trajectory)

@@ -40,7 +40,7 @@ def mutants(
     ]
     unexcused = sum(not trial.excuse for trial in survivors)
     bounds = [
-        Goal("spoilt copies that fail or raise, %", everything["share"], _ENOUGH),
+        Goal("spoilt copies whose verdict is fails, %", everything["share"], _ENOUGH),
         Goal("copies that survive without a reason", float(unexcused), 0.0, at_least=False),
     ]
     conclude(machine, sheets, bounds, [], format, goals)
@@ -50,7 +50,7 @@ _HEADINGS = (
     Heading("document", "document"),
     Heading("claims", "claims", "d"),
     Heading("copies", "copies", "d"),
-    Heading("caught", "caught", "d"),
+    Heading("caught", "fails", "d"),
     Heading("share", "%", ".1f"),
 )
 _SURVIVORS = (

@@ -1,4 +1,4 @@
-"""`nao-kin bench practicum`: tasks 1e, 1f and 1g of the practicum sheet as printed, with the answers they give."""
+"""`nao-kin bench practicum`: tasks 1e to 1h of the practicum sheet as printed, with the answers they give."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nao_kin.cli.bench.not_converging import not_converging
 from nao_kin.cli.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
 from nao_kin.cli.output import FormatOption, OutputFormat
 
@@ -28,7 +29,7 @@ def practicum(
     goals: GoalsOption = True,
     format: FormatOption = OutputFormat.text,
 ) -> None:
-    """Tasks 1e, 1f and 1g of the practicum on the JACO2: transpose against pseudo-inverse, jumps, the error bound."""
+    """Tasks 1e to 1h of the practicum on the JACO2: transpose against pseudo-inverse, jumps, why the error may stay."""
     import numpy as np
 
     machine, rng = Machine(), np.random.default_rng(seed)
@@ -43,6 +44,15 @@ def practicum(
         answers += ["", _answer(where, rows), faults]
         bounds.append(Goal(f"1e, {where}: pseudo-inverse < 1 cm, %", rows[0]["pseudo_reached"], 90.0))
         bounds.append(Goal(f"1g, {where}: faults not reported", float(silent), 0.0, at_least=False))
+    reasons = not_converging(targets, seed)
+    headings = (
+        Heading("reason", "1h: why"),
+        Heading("missed", "missed %", ".0f"),
+        Heading("remedy", "remedy"),
+        Heading("still", "missed %", ".0f"),
+    )
+    title = f"1h: why the error does not go to 0, and what helps; {targets} targets each, missed by more than 1 cm"
+    sheets.append(Sheet("task_1h", title, headings, reasons))
     conclude(machine, sheets, bounds, [*answers, "", *_NOTES], format, goals)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -140,17 +140,12 @@ def conclude(
     """
     if format is OutputFormat.json:
         data: dict[str, Any] = {
-            "machine": {
-                "python": machine.python,
-                "processor": machine.processor,
-                "cores": machine.cores,
-                "load": machine.load,
-                "versions": machine.versions,
-            },
+            "machine": asdict(machine),
             "notes": list(notes),
-            "goals": [
-                {"what": g.what, "value": g.value, "bound": g.bound, "at_least": g.at_least, "met": g.met}
-                for g in goals
+            "goals": [asdict(goal) | {"met": goal.met} for goal in goals],
+            "sheets": [
+                {"name": sheet.name, "title": sheet.title, "columns": [asdict(heading) for heading in sheet.headings]}
+                for sheet in sheets
             ],
         }
         report_json(data | {sheet.name: [dict(row) for row in sheet.rows] for sheet in sheets})
