@@ -21,6 +21,8 @@ __all__ = ["Refuse", "TomlFile"]
 Refuse: TypeAlias = "Callable[[str, int | None, str], NaoKinError]"
 """Makes an error of a path, a line and a reason."""
 
+_TOO_MANY_DIGITS = "a whole number in it has too many digits."
+_MOST_BITS = 4096  # of a whole number; Python refuses to print one of four times as many
 _LARGEST = 1 << 20  # [byte] a table of a thousand rows is a tenth of this
 
 
@@ -77,6 +79,10 @@ class TomlFile:
         except tomllib.TOMLDecodeError as error:
             found = re.search(r"at line (\d+)", str(error))
             raise refusal(path, int(found[1]) if found else None, f"not TOML: {error}.") from None
+        except ValueError:  # a decimal of more digits than Python reads
+            raise refusal(path, None, _TOO_MANY_DIGITS) from None
+        if _has_huge_number(data):
+            raise refusal(path, None, _TOO_MANY_DIGITS)
         return cls(path, text, data, refusal, what)
 
     def known_keys(self, data: Mapping[str, Any], known: Iterable[str], section: str, number: int) -> None:
@@ -106,3 +112,17 @@ class TomlFile:
             if start is not None and key and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=", line):
                 return index + 1
         return None if start is None or not section else start + 1
+
+
+def _has_huge_number(data: dict[str, Any]) -> bool:
+    """Whether a whole number is anywhere that no message could quote."""
+    left: list[Any] = [data]
+    while left:
+        value = left.pop()
+        if isinstance(value, dict):
+            left += value.values()
+        elif isinstance(value, list):
+            left += value
+        elif isinstance(value, int) and value.bit_length() > _MOST_BITS:
+            return True
+    return False

@@ -175,3 +175,8 @@ def test_our_own_robots_are_drawn_of_shapes_that_are_watched(name):
     kinds = {type(solid.shape) for link in robot(name).document.links for solid in link.collisions}
     assert kinds <= {Box, Cylinder, Sphere}
     assert model(name).notes == ()
+
+
+@pytest.mark.parametrize("size", [1e308, 1e154, 1.0, 1e-200, 1e-307])
+def test_a_planes_normal_has_unit_length_whatever_its_size(size):
+    assert Plane("table", (size, size, size)).normal == pytest.approx(np.full(3, 1.0 / np.sqrt(3.0)), abs=1e-15)

@@ -320,3 +320,10 @@ def test_unreadable_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(KeyframeFileError, match="not UTF-8"):
         read_keyframes(tmp_path / "bytes.toml")
+
+
+@pytest.mark.parametrize("number", ["0x" + "f" * 6000, "9" * 6000, f"[1, [0o{'7' * 6000}]]"])
+@pytest.mark.parametrize("key", ["robot", "angles", "sample_time"])
+def test_a_whole_number_that_python_does_not_print_is_refused(key: str, number: str) -> None:
+    with pytest.raises(KeyframeFileError, match="too many digits"):
+        parse_keyframes(f"{key} = {number}")

@@ -121,6 +121,12 @@ def test_a_joint_that_is_no_motor_is_refused_with_near_matches(joint, near):
     assert isinstance(caught.value, NaoKinError)
 
 
+def test_a_whole_number_beyond_floats_is_refused():
+    motors = Motors.of(robot("nao"))
+    with pytest.raises(FrameError, match="HeadYaw = inf is not finite"):
+        target_of(command({"HeadYaw": 10**400}), motors, np.zeros(len(motors.joints)))
+
+
 def test_a_command_changes_what_it_names_and_nothing_else():
     motors = Motors.of(robot("nao"))
     last = np.linspace(-0.1, 0.1, len(motors.joints))

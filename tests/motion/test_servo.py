@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -243,3 +244,22 @@ def test_misuse_is_named():
         run_servo(VelocityServos(motors), ramp(), Gains(1.0), period=0.0)
     with pytest.raises(InvalidInputError, match="overshoot"):
         tune(VelocityServos(motors, time_constant=5.0), smooth(samples=33), allowed=0.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"settle": math.nan}, "settle"),
+        ({"settle": -5.0}, "settle"),
+        ({"settle": 1e12}, "at most 1000000 control periods"),
+        ({"period": 1e-9}, "at most 1000000 control periods"),
+        ({"acceleration": [1.0, 2.0]}, "acceleration: expected"),
+        ({"acceleration": "fast"}, "acceleration: expected"),
+        ({"acceleration": math.nan}, "acceleration: expected"),
+    ],
+)
+def test_numbers_of_a_run_that_make_no_sense_are_refused(options: dict[str, Any], said: str) -> None:
+    plant = VelocityServos(Motors.of(robot("nao")))
+    reference = Trajectory(["HeadYaw"], [0.0, 1.0], [[0.0], [0.5]])
+    with pytest.raises(InvalidInputError, match=said):
+        run_servo(plant, reference, Gains(5.0), **options)

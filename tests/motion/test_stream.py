@@ -246,6 +246,15 @@ def test_garbage_in_a_frame_is_refused_and_the_connection_stays(server):
     assert "no msgpack" in reason
 
 
+def test_a_peer_that_floods_is_read_a_part_at_a_time_and_nothing_is_lost(server):
+    frame = encode(command({"nobody": 0.0}))
+    with SocketClient(server.address) as client:
+        client._socket.sendall(300 * frame)
+        counts = [len(server.receive().messages) for _ in range(20)]
+    assert sum(counts) == 300
+    assert max(counts) <= 64 + 1024 // len(frame) + 1
+
+
 def test_a_second_peer_is_turned_away(server):
     with SocketClient(server.address) as first, SocketClient(server.address) as second:
         received(server)

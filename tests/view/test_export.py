@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import math
 import stat
 from html.parser import HTMLParser
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.trajectory import Trajectory
 from nao_kin.view import export
 from nao_kin.view.export import export_html, show
 from nao_kin.view.page import page
@@ -117,7 +119,21 @@ def test_show_is_one_sandboxed_frame_with_the_whole_page(small: Robot) -> None:
     assert len(repr(shown)) < 80
 
 
-@pytest.mark.parametrize("height", [0, -5])
-def test_show_needs_a_height(small: Robot, height: int) -> None:
+@pytest.mark.parametrize("height", [0, -5, math.nan, math.inf])
+def test_show_needs_a_height(small: Robot, height: float) -> None:
     with pytest.raises(InvalidInputError, match="height"):
-        show(small, height=height)
+        show(small, height=height)  # type: ignore[arg-type]
+
+
+def test_half_a_surrogate_pair_in_a_name_is_shown_as_a_question_mark(small: Robot, tmp_path: Path) -> None:
+    postures = {"\ud800up": {"lift": 0.1}, "down": {"lift": 0.0}}
+    motion = Trajectory(["lift"], [0.0, 1.0], [[0.0], [0.1]], "\udfffgo")
+    for content, produced in ((postures, "2 named postures"), (motion, "?go, 2 samples")):
+        text = export_html(tmp_path / "out.html", small, content).read_text(encoding="utf-8")
+        assert produced in text
+        show(small, content)._repr_html_().encode("utf-8")
+
+
+def test_a_motion_as_far_as_numbers_go_is_written(small: Robot, tmp_path: Path) -> None:
+    motion = Trajectory(["lift"], [0.0, 1e300], [[0.0], [-1e308]])
+    assert export_html(tmp_path / "out.html", small, motion).exists()

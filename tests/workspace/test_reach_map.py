@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import pickle
 import re
@@ -119,6 +120,10 @@ def negative(counts: np.ndarray) -> np.ndarray:
         ("sampling", lambda _: np.array("dice"), "sampling in"),
         ("axes", lambda _: np.array("w"), "axes in"),
         ("chain", lambda _: np.array("x" * 2000), "chain in .*: expected a short text"),
+        ("chain", lambda _: np.array("\ud800"), "chain in .*: expected text that is Unicode"),
+        ("unit", lambda _: np.array("\udfff"), "unit in .*: expected text that is Unicode"),
+        ("counts", lambda a: np.where(a > 0, 2**62, 0), "counts in .*: expected counts ≥ 0, at most 2147483647 in all"),
+        ("voxel", lambda _: np.float64(1e300), "voxel in"),
         ("format", lambda _: np.int64(2), "format in .*: expected version 1"),
     ],
 )
@@ -144,6 +149,27 @@ def with_counts(reach: nk.ReachMap, path: Path, content: bytes) -> Path:
     return path
 
 
+def test_text_beyond_unicode_is_refused(reach: nk.ReachMap, tmp_path: Path) -> None:
+    raw = np.array([2**32 - 1], dtype="<u4").view("<U1")[0:1].reshape(())
+    with pytest.raises(nk.NaoKinError, match=r"bad\.npz"):
+        nk.ReachMap.load(saved(reach, tmp_path / "bad.npz", chain=raw))
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_damage_is_refused_or_read_but_never_more(reach: nk.ReachMap, method: int, tmp_path: Path) -> None:
+    path, packed = reach.save(tmp_path / "good.npz"), io.BytesIO()
+    with zipfile.ZipFile(path) as before, zipfile.ZipFile(packed, "w", method) as after:
+        for entry in before.namelist():
+            after.writestr(entry, before.read(entry))
+    for seed in range(60):
+        content = bytearray(packed.getvalue())
+        for at in np.random.default_rng(seed).integers(0, len(content), 3):
+            content[at] ^= 0x5A
+        path.write_bytes(content)
+        with contextlib.suppress(nk.NaoKinError):
+            nk.ReachMap.load(path)
+
+
 def header(shape: str, kind: str = "<i8", version: bytes = b"\x01\x00") -> bytes:
     text = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".encode().ljust(117) + b"\n"
     return b"\x93NUMPY" + version + len(text).to_bytes(2, "little") + text
@@ -160,6 +186,9 @@ def header(shape: str, kind: str = "<i8", version: bytes = b"\x01\x00") -> bytes
         header("(4, 4, 4)", "|O") + pickle.dumps(os_system()),
         header("(4, 4, 4)", version=b"\x03\x00"),
         header("__import__('os').abort()"),
+        header("("),
+        header("(" * 5000),
+        header("-" * 9000 + "1"),
     ],
 )
 def test_a_hostile_array_is_refused_before_memory_is_asked_for(reach: nk.ReachMap, content: bytes, tmp_path) -> None:

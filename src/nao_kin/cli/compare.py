@@ -149,7 +149,9 @@ def _write_corrected(found: Comparison, path: Path) -> None:
     if found.corrected is None:
         typer.echo(f"nao-kin: no table that agrees was found, so {path} is not written.", err=True)
         return
-    path.write_text(found.corrected.to_toml(), encoding="utf-8")
+    from nao_kin.replacing import replace_file
+
+    replace_file(path, found.corrected.to_toml().encode("utf-8"))
 
 
 def _model_of(table: str) -> Chain:

@@ -47,9 +47,10 @@ def workspace(
         reach.plot().savefig(picture)
         typer.echo(f"wrote {picture}", err=True)
     if html is not None:
+        from nao_kin.replacing import replace_file
         from nao_kin.view.page import page
 
-        html.write_text(page(_scene(which, reach)), encoding="utf-8")
+        replace_file(html, page(_scene(which, reach)).encode("utf-8"))
         typer.echo(f"wrote {html}", err=True)
 
 

@@ -45,9 +45,11 @@ class Plane:
             InvalidInputError: A normal of length 0, or something that is not finite.
         """
         direction = vector(normal, f"normal of {name}", 3)
-        length = float(np.linalg.norm(direction))
-        if length == 0.0:
+        size = float(np.abs(direction).max())
+        if size == 0.0:
             raise InvalidInputError(f"normal of {name}", "a vector that points somewhere", "length 0")
+        direction = direction / size  # whose square neither runs over nor vanishes
+        length = float(np.linalg.norm(direction))
         height = float(vector([offset], f"offset of {name} [m]", 1)[0])
         for field, value in (("name", name), ("normal", frozen(direction / length)), ("offset", height)):
             object.__setattr__(self, field, value)

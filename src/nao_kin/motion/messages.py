@@ -129,7 +129,10 @@ def target_of(message: Message, motors: Motors, last: Floats) -> Floats:
 def _number(value: object, joint: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise FrameError(f"{joint} has to be a number [rad or m], not {type(value).__name__}")
-    number = float(value)  # msgpack has no whole number too large for it
+    try:
+        number = float(value)
+    except OverflowError:  # not by msgpack, which has no whole number that large
+        number = math.inf
     if not math.isfinite(number):
         raise FrameError(f"{joint} = {number} is not finite")
     return number

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.arrays import Floats, frozen, positive, vector
+from nao_kin.arrays import Floats, finite, frozen, positive, vector
 from nao_kin.chain import neutral
 from nao_kin.errors import InvalidInputError
 from nao_kin.trajectory import Trajectory
+from nao_kin.trajectory.sampling import LARGEST_COUNT
+from nao_kin.trajectory.synchrony import per_axis
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -77,7 +79,7 @@ class Servo:
     ) -> None:
         n = len(motors.joints)
         self.motors, self.gains, self.period = motors, gains, positive(period, "period", "[s]")
-        self.acceleration = np.broadcast_to(np.asarray(acceleration, dtype=np.float64), n)
+        self.acceleration = per_axis(acceleration, "acceleration", n, endless=True)
         if not (self.acceleration > 0.0).all():
             raise InvalidInputError("acceleration", "numbers > 0", str(float(self.acceleration.min())))
         self._integral, self._command = np.zeros(n), np.zeros(n)
@@ -219,7 +221,13 @@ def reference_samples(
         InvalidInputError, UnknownNameError: See `run_servo`.
     """
     still = neutral(motors) if hold is None else motors.q_of(hold)
-    count = int(np.ceil((reference.duration + settle) / positive(period, "period", "[s]") - 1e-9)) + 1
+    rest = finite(settle, "settle", "[s]")
+    if rest < 0.0:
+        raise InvalidInputError("settle", "a number ≥ 0 [s]", f"{rest:g}")
+    periods = (reference.duration + rest) / positive(period, "period", "[s]")
+    if not periods < LARGEST_COUNT:
+        raise InvalidInputError("period", f"at most {LARGEST_COUNT} control periods", f"{periods:.3g}")
+    count = int(np.ceil(periods - 1e-9)) + 1
     times = reference.times[0] + period * np.arange(count)
     wanted = np.tile(vector(still, "hold", len(motors.joints)), (count, 1))
     for name, column in zip(reference.joint_names, reference.q.T, strict=True):

@@ -23,7 +23,10 @@ __all__ = ["Address", "InProcess", "Received", "SocketClient", "SocketServer", "
 Address: TypeAlias = "str | os.PathLike[str] | tuple[str, int]"
 """The path of a Unix socket, or host and port on this machine; port 0 takes a free one."""
 
-_MOST_A_CYCLE: Final = 4 * MAX_FRAME  # bytes read at once from a peer that floods; the rest waits in its socket
+# What is read at once from a peer that floods; the rest waits in its socket, and the loop keeps its time.
+_MOST_A_CYCLE: Final = 4 * MAX_FRAME  # bytes
+_MOST_MESSAGES: Final = 64
+_PIECE: Final = 1024  # bytes; may hold some hundred messages, all of which are taken
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -121,9 +124,9 @@ class SocketServer:
         self._accept()
         messages, refused = list[Message](), list[str]()
         read = 0
-        while self._peer is not None and read < _MOST_A_CYCLE:
+        while self._peer is not None and read < _MOST_A_CYCLE and len(messages) + len(refused) < _MOST_MESSAGES:
             try:
-                data = self._peer.recv(MAX_FRAME)
+                data = self._peer.recv(_PIECE)
             except BlockingIOError:
                 break
             except OSError:

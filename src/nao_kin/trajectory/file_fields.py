@@ -6,12 +6,15 @@ import json
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, Final, Literal, cast
+from typing import TYPE_CHECKING, Any, Final, Literal, cast
 
 from nao_kin.chain import ChainJoint
 from nao_kin.errors import TrajectoryFileError, near_matches
 
-__all__ = ["FORMAT", "Place", "columns_of", "joint_of_column", "joint_of_record", "number_of", "record_of"]
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["FORMAT", "Place", "columns_of", "joint_of_column", "joint_of_record", "number_of", "record_of", "repeated"]
 
 FORMAT: Final = "nao_kin trajectory, format 1"
 """How a file says what it is."""
@@ -21,7 +24,7 @@ _KINDS: Final = {"rad": "revolute", "m": "prismatic"}
 _LIMITS: Final = ("lower", "upper", "max_velocity")
 _KEYS: Final = ("name", "kind", "unit", *_LIMITS)
 # What Python's float() takes beyond this (nan, 1_000, digits of other scripts) no other program would.
-_NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +84,16 @@ def joint_of_record(record: object, place: Place) -> ChainJoint:
     if joint.lower > joint.upper or joint.max_velocity <= 0.0:
         raise place.refused(f"joint {name!r}: expected lower ≤ upper and max_velocity > 0, got {json.dumps(limits)}.")
     return joint
+
+
+def repeated(names: Sequence[str]) -> str:
+    """The first name that occurs again; empty if none does."""
+    seen = set[str]()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return ""
 
 
 def number_of(value: object, place: Place, what: str, column: int | None = None, *, written: bool = False) -> float:

@@ -7,7 +7,7 @@ import re
 from typing import Any, Final
 
 from nao_kin.errors import near_matches
-from nao_kin.trajectory.file_fields import FORMAT, Place, columns_of, joint_of_record, number_of, record_of
+from nao_kin.trajectory.file_fields import FORMAT, Place, columns_of, joint_of_record, number_of, record_of, repeated
 from nao_kin.trajectory.trajectory import Trajectory
 
 __all__ = ["format_json", "parse_json"]
@@ -46,8 +46,7 @@ def parse_json(text: str, path: str) -> Trajectory:
     if not isinstance(data.get("joints"), list) or not data["joints"]:
         raise place.refused("joints: expected a list of joints.")
     joints = tuple(joint_of_record(record, place) for record in data["joints"])
-    names = [joint.name for joint in joints]
-    if twice := next((name for name in names if names.count(name) > 1), ""):
+    if twice := repeated([joint.name for joint in joints]):
         raise place.refused(f"joint {twice!r} occurs twice.")
     columns = columns_of(joints)
     if data.get("columns", columns) != columns:

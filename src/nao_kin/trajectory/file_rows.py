@@ -15,6 +15,7 @@ from nao_kin.trajectory.file_fields import (
     joint_of_record,
     number_of,
     record_of,
+    repeated,
 )
 from nao_kin.trajectory.trajectory import Trajectory
 
@@ -81,23 +82,23 @@ class _Reader:
 
     def after_the_head(self, lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
         """Reads the head, and gives the rows below."""
-        records: list[ChainJoint] = []
+        records: dict[str, ChainJoint] = {}
         for number, line in lines:
             place = Place(self.path, number)
             if line.startswith("#"):
                 said = line[1:].strip()
                 if said.startswith("time"):
-                    self.take_columns(said.split(", "), said, records, place)
+                    self.take_columns(said.split(", "), said, tuple(records.values()), place)
                 elif self.columns:
                     continue
                 elif (joint := self.take_comment(said, place)) is not None:
-                    if joint.name in [known.name for known in records]:
+                    if joint.name in records:
                         raise place.refused(f"joint {joint.name!r} occurs twice.")
-                    records.append(joint)
+                    records[joint.name] = joint
             elif self.columns:
                 yield number, line
             elif self.form == "csv":
-                self.take_columns(next(csv.reader([line])), line, records, place)
+                self.take_columns(_csv_cells(line, place), line, tuple(records.values()), place)
             else:
                 hint = "The first comment lines name the columns, as '# time [s], joint_1 [rad]'."
                 raise place.refused("expected column headings before the first row, got none.", hint=hint)
@@ -120,23 +121,23 @@ class _Reader:
         self.name = record
         return None
 
-    def take_columns(self, found: list[str], said: str, records: list[ChainJoint], place: Place) -> None:
+    def take_columns(self, found: list[str], said: str, joints: tuple[ChainJoint, ...], place: Place) -> None:
         """The headings: of the joints of the head, or, without those, joints without limits."""
         if self.columns:
             raise place.refused("the column headings are there already.")
         if found[0].strip() != "time [s]":
             raise place.refused(f"expected 'time [s]', got {found[0][:60]!r}.", 1)
-        joints = tuple(records)
-        if not joints:
+        recorded = bool(joints)
+        if not recorded:
             joints = tuple(joint_of_column(text, place, 2 + i) for i, text in enumerate(found[1:]))
         if not joints:
             raise place.refused("expected at least one joint beside the time, got none.")
         names = [joint.name for joint in joints]
-        if twice := next((name for name in names if names.count(name) > 1), ""):
+        if twice := repeated(names):
             raise place.refused(f"{twice!r} occurs twice.", 2 + names.index(twice))
         expected = columns_of(joints)
         # A name may hold a comma, so the whole line is what decides; the columns are for the message.
-        if records and said != (", ".join(expected) if self.form == "txt" else _csv_line(expected)):
+        if recorded and said != (", ".join(expected) if self.form == "txt" else _csv_line(expected)):
             pairs = enumerate(zip([*expected, "no more"], [*found, "no more"], strict=False), start=1)
             at, (wanted, got) = next((pair for pair in pairs if pair[1][0] != pair[1][1]), (1, (expected[0], said)))
             raise place.refused(f"expected {wanted!r} as the joints above say, got {got[:60]!r}.", at)
@@ -153,6 +154,13 @@ class _Reader:
             number_of(word, place, name, column, written=True)
             for column, (word, name) in enumerate(zip(words, self.columns, strict=True), start=1)
         ]
+
+
+def _csv_cells(line: str, place: Place) -> list[str]:
+    try:
+        return next(csv.reader([line], strict=True))
+    except csv.Error as error:
+        raise place.refused(f"column headings: {error}.") from None
 
 
 def _csv_line(columns: list[str]) -> str:

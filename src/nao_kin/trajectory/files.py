@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.errors import InvalidInputError, TrajectoryFileError
+from nao_kin.replacing import replace_file
 from nao_kin.trajectory.file_json import format_json, parse_json
 from nao_kin.trajectory.file_rows import format_rows, parse_rows
 
@@ -38,8 +39,7 @@ def write_trajectory(path: str | os.PathLike[str], trajectory: Trajectory) -> Pa
     """
     target = Path(path)
     text = format_trajectory(trajectory, form_of(target))
-    target.write_text(text, encoding="utf-8", newline="\n")
-    return target
+    return replace_file(target, text.encode("utf-8"))
 
 
 def read_trajectory(path: str | os.PathLike[str]) -> Trajectory:

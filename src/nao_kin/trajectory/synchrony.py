@@ -79,7 +79,10 @@ def per_axis(value: ArrayLike, what: str, count: int, *, endless: bool = False) 
         value = np.full(count, value)
     if not endless:
         return vector(value, what, count)
-    given = np.array(value, dtype=np.float64)
+    try:
+        given = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return vector(value, what, count)  # which says what is wrong
     none = given == np.inf
     return np.where(none, np.inf, vector(np.where(none, 0.0, given), what, count))
 

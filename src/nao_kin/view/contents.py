@@ -18,6 +18,7 @@ from nao_kin.view.workspace_scene import with_workspace
 
 if TYPE_CHECKING:
     from nao_kin.analytic.solutions import Solutions
+    from nao_kin.arrays import Floats
     from nao_kin.crosscheck import Comparison
     from nao_kin.ik.problem import IKResult
     from nao_kin.ik.target import Target
@@ -158,7 +159,7 @@ def _trajectory_scene(robot: Robot, trajectory: Trajectory) -> Scene:
     moved = {leaders[joint].leader if joint in leaders else joint for joint in trajectory.joint_names}
     shared = [len(moved & _motors(scene, chain)) for chain in scene.chains]
     tips = sorted((k for k, count in enumerate(shared) if count), key=lambda k: -shared[k])
-    motion = Motion(name, trajectory.joint_names, trajectory.times, np.round(trajectory.q, DIGITS), tips=tuple(tips))
+    motion = Motion(name, trajectory.joint_names, trajectory.times, _rounded(trajectory.q), tips=tuple(tips))
     produced = f"{name}, {len(trajectory)} samples over {trajectory.duration:.4g} s"
     return replace(scene, motion=motion, produced=produced, legs=())
 
@@ -168,7 +169,7 @@ def _walk_scene(robot: Robot, walk: Walk) -> Scene:
     if walk.trajectory is None:
         raise InvalidInputError("walk", "one that can be walked", walk.message.rstrip("."))
     scene = _trajectory_scene(robot, walk.trajectory)
-    T_start_root = np.round(np.linalg.inv(walk.T_world_body[0]) @ walk.T_world_body, DIGITS)
+    T_start_root = _rounded(np.linalg.inv(walk.T_world_body[0]) @ walk.T_world_body)
     motion = replace(cast("Motion", scene.motion), body=T_start_root, tips=tuple(range(len(scene.chains))))
     return replace(scene, motion=motion, notes=(*scene.notes, walk.message))
 
@@ -303,9 +304,15 @@ def _iterates(result: IKResult | TreeResult, space: Chain | Tree, tips: tuple[st
         name="iterates",
         joints=space.joint_names,
         times=np.arange(len(q), dtype=np.float64),
-        q=np.round(q, DIGITS),
+        q=_rounded(q),
         iterates=True,
         curves=tuple(curves),
         tips=tuple(range(len(tips))),
         starts=np.append(trace.start, trace.start[-1]),
     )
+
+
+def _rounded(values: Floats) -> Floats:
+    """Values to `DIGITS`; the largest ones, which have no digits there and would run over, as they are."""
+    with np.errstate(over="ignore"):
+        return np.where(np.abs(values) < 1e9, np.round(values, DIGITS), values)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import html
-import os
-import secrets
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.replacing import replace_file
 from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
 from nao_kin.view.contents import scene_of
 from nao_kin.view.page import page
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable
 
     from nao_kin.view.contents import Content, Subject
@@ -108,7 +108,7 @@ def show(
         UnknownNameError: A posture or trajectory names a joint the robot does not have.
         InvalidInputError: As `export_html`, or the height is not positive.
     """
-    if height <= 0:
+    if not 0 < height < math.inf:
         raise InvalidInputError("height", "a positive number of CSS pixels", str(height))
     scene = scene_of(subject, content, explain=explain)
     return InlinePage(fitted(scene, max_mb, page), scene.title, int(height))
@@ -119,26 +119,4 @@ def _written(path: str | os.PathLike[str], scene: Callable[[], Scene], max_mb: f
     if target.exists() and not target.is_file():
         kind = "directory" if target.is_dir() else "special file"
         raise InvalidInputError("path", "the name of a file to write", f"the {kind} {target}")
-    _replace(target, fitted(scene(), max_mb, page).encode("utf-8"))
-    return target
-
-
-def _replace(target: Path, content: bytes) -> None:
-    """Put `content` in place of a file in one step, through a neighbour in the same directory."""
-    real = Path(os.path.realpath(target))  # through a link, so that the link stays one
-    neighbour = real.with_name(f".{real.name[:100]}.{secrets.token_hex(4)}.tmp")
-    try:
-        with neighbour.open("xb") as file:
-            file.write(content)
-        neighbour.replace(real)
-    except OSError as error:
-        _forget(neighbour)
-        raise type(error)(error.errno, error.strerror, str(target)) from None  # the neighbour is nobody's business
-    except BaseException:
-        _forget(neighbour)
-        raise
-
-
-def _forget(file: Path) -> None:
-    with contextlib.suppress(OSError):
-        file.unlink(missing_ok=True)
+    return replace_file(target, fitted(scene(), max_mb, page).encode("utf-8"))

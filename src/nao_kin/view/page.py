@@ -85,7 +85,8 @@ def page(scene: Scene) -> str:
 
 def _filled(template: str, values: dict[str, str]) -> str:
     """The template with every `{{name}}` replaced in one pass, so that a value is never searched for names."""
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], template)
+    text = re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], template)
+    return text.encode("utf-8", "replace").decode("utf-8")  # half a surrogate pair, in a name, cannot be written
 
 
 def _source(scene: Scene) -> str:

@@ -49,7 +49,7 @@ def scene_json(scene: Scene) -> bytes:
         "framed": list(scene.framed),
         "legs": [_leg(leg, number) for leg in scene.legs],
     }
-    return json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
+    return json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8", "replace")
 
 
 def _node(node: Node, number: Mapping[str, int]) -> dict[str, Any]:

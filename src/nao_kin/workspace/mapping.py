@@ -14,7 +14,7 @@ from nao_kin.ik.reach import reach_shell
 from nao_kin.kernels.reaching import NOTHING, VOLUME, Cells, Samples, sort_into_cells
 from nao_kin.progress import progress
 from nao_kin.workspace.cluster import on_cluster
-from nao_kin.workspace.map_file import MOST_CELLS
+from nao_kin.workspace.map_file import MOST_CELLS, MOST_SAMPLES
 from nao_kin.workspace.reach_map import MEASURES, Measure, ReachMap
 from nao_kin.workspace.sampling import Sampling, samples_of
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["reachability"]
 
 _CHUNK: Final = 2**20
-_MOST_SAMPLES: Final = 2**31 - 1  # a sum of so many measures, each below 2³², fits 63 bits
 _BITS: Final = 32  # of a scaled measure
 _CELLS_OF_ALL_THREADS: Final = 2**24  # 400 MB
 _FINENESS: Final = 40  # cubes from the centre of reach to its edge, at most
@@ -84,7 +83,7 @@ def reachability(
         InvalidInputError: A number out of its range, too many cubes, or a tip that nothing bounds.
         UnknownNameError: No such measure or sampling.
     """
-    samples, chunk = _whole(samples, "samples", _MOST_SAMPLES), _whole(chunk, "chunk", _MOST_SAMPLES)
+    samples, chunk = _whole(samples, "samples", MOST_SAMPLES), _whole(chunk, "chunk", MOST_SAMPLES)
     if measure not in MEASURES:
         raise UnknownNameError("measure", measure, MEASURES)
     if axes not in ("x", "y", "z", "xy", "xz", "yz", "xyz"):
