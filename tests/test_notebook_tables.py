@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from html.parser import HTMLParser
+from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import nao_kin as nk
 from nao_kin.table import Column, Table
@@ -154,3 +156,15 @@ def test_long_tables_are_folded_and_notes_keep_their_lines() -> None:
     short = Table((Column("k"),), rows[:5], styles={1: "bad", 2: "faint"})._repr_html_()
     assert "<details" not in short
     assert short.count("<tr style=") == 2
+
+
+def test_numbers_wider_than_the_terminal_continue_below_under_the_same_names() -> None:
+    numbers = tuple(f"{k}.0000" for k in range(10, 24))
+    table = Table((Column("joint"), *(Column(f"#{k}", number=True) for k in range(14))), (("LHipYawPitch", *numbers),))
+    printed = StringIO()
+    Console(width=80, file=printed).print(table)
+    lines = printed.getvalue().splitlines()
+    assert max(map(len, lines)) <= 80
+    rows = [line.split() for line in lines if line.startswith("LHipYawPitch ")]
+    assert len(rows) > 1
+    assert tuple(cell for row in rows for cell in row[1:]) == numbers

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import rich.console
+    import rich.table
 
 __all__ = ["Column", "Style", "Table"]
 
@@ -19,6 +20,8 @@ _COLOURS = {"": "", "good": "green", "bad": "red", "faint": "dim"}
 # The page around is the notebook's, light or dark: colours are of middle lightness, and everything else is inherited.
 _CSS = {"": "", "good": "color:#2a9153", "bad": "color:#d6453d", "faint": "opacity:0.65"}
 _TITLE = "text-align:left;font-weight:600"
+_GAP = 3
+"""Blanks between two columns on a terminal."""
 _FOLDED = 40
 """Rows from which on a table in HTML is folded, so that a notebook stays a page one can read."""
 
@@ -49,9 +52,40 @@ class Table:
     note: str = ""
     styles: dict[int, Style] = field(default_factory=dict)
 
-    def __rich__(self) -> rich.console.Group:
+    def __rich_console__(
+        self, console: rich.console.Console, options: rich.console.ConsoleOptions
+    ) -> rich.console.RenderResult:
+        import rich.text
+
+        # Lines of their own: rich would wrap a title to the width of a narrow table.
+        if self.title:
+            yield rich.text.Text(self.title, style="bold")
+        for block, shown in enumerate(self._blocks(options.max_width)):
+            if block:
+                yield rich.text.Text("")
+            yield self._rich_table(shown)
+        if self.note:
+            yield rich.text.Text(self.note)
+
+    def _blocks(self, width: int) -> list[list[int]]:
+        """Which columns stand side by side: all, unless names and then only numbers are wider than the terminal."""
+        everything = list(range(len(self.columns)))
+        if not all(column.number for column in self.columns[1:]):
+            return [everything]  # texts fold
+        widths = [max(map(len, texts)) for texts in zip(self._headings(), *self.rows, strict=True)]
+        blocks: list[list[int]] = []
+        for k in everything[1:]:
+            if blocks and sum(widths[i] + _GAP for i in blocks[-1]) + widths[k] <= width:
+                blocks[-1].append(k)
+            else:
+                blocks.append([0, k])
+        return blocks or [everything]
+
+    def _headings(self) -> tuple[str, ...]:
+        return tuple(column.heading for column in self.columns)
+
+    def _rich_table(self, shown: list[int]) -> rich.table.Table:
         import rich.box
-        import rich.console
         import rich.table
         import rich.text
 
@@ -61,7 +95,7 @@ class Table:
             pad_edge=False,
             padding=(0, 1),
         )
-        for column in self.columns:
+        for column in (self.columns[k] for k in shown):
             table.add_column(
                 rich.text.Text(column.heading),
                 justify="right" if column.number else "left",
@@ -71,11 +105,8 @@ class Table:
         for index, row in enumerate(self.rows):
             style = _COLOURS[self.styles.get(index, "")]
             # Text, not str: a link may be called "[red]" and must print as such.
-            table.add_row(*(rich.text.Text(cell) for cell in row), style=style)
-        # Lines of their own: rich would wrap a title to the width of a narrow table.
-        title = [rich.text.Text(self.title, style="bold")] if self.title else []
-        note = [rich.text.Text(self.note)] if self.note else []
-        return rich.console.Group(*title, table, *note)
+            table.add_row(*(rich.text.Text(row[k]) for k in shown), style=style)
+        return table
 
     def _repr_html_(self) -> str:
         """The table as a fragment of HTML, every text escaped; long ones are folded under their title."""

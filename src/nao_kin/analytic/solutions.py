@@ -72,7 +72,8 @@ class Solutions(tuple[IKResult, ...]):
             *(Column(f"#{i + 1}", number=True) for i in range(len(self))),
         )
         digits = 6 if len(self) <= _FEW else 4
-        rows = tuple((name, *(f"{result.q[k]:.{digits}f}" for result in self)) for k, name in enumerate(names))
+        shown = [np.round(result.q, digits) + 0.0 for result in self]  # rounding's −0 is 0
+        rows = tuple((name, *(f"{q[k]:.{digits}f}" for q in shown)) for k, name in enumerate(names))
         told = [f"#{i + 1} {r.status.name}: {r.branch or 'the only one'}." for i, r in enumerate(self)]
         return Table(columns, rows, title=title, note="\n".join([*told, self.reason]).strip())
 

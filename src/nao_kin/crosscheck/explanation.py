@@ -131,8 +131,8 @@ class Explanation:
         lines += [f"  {step}" for step in self.steps]
         others = self.alternatives[1:]
         if others:
-            count = f"{len(others)} other set{'s' if len(others) > 1 else ''} of {len(first.edits)}"
-            lines.append(f"or after any of {count}:")
+            any_of = "the one other set" if len(others) == 1 else f"any of {len(others)} other sets"
+            lines.append(f"or after {any_of} of {len(first.edits)}:")
             lines += _listed([str(other) for other in others], _SETS_SHOWN)
         return "\n".join(lines)
 
