@@ -3,13 +3,18 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-wheel lint docs urdf clean
+.PHONY: demo test warm test-wheel lint docs urdf clean
 
 demo: $(VENV)/.installed
 	$(BIN)/nao-kin demo
 
-test: $(VENV)/.installed-dev lint
+test: $(VENV)/.installed-dev
+	$(MAKE) --no-print-directory -j2 lint warm
 	$(BIN)/python -m pytest -n auto
+
+# Beside the linters, and once instead of in every worker of the tests.
+warm: $(VENV)/.installed-dev
+	$(BIN)/nao-kin warmup
 
 # The same tests on what a user installs: the wheel, in an environment of its own, away from src.
 test-wheel: $(VENV)/.installed-dev

@@ -135,6 +135,56 @@ def _singular_joint(path: JointPath, q: Floats, joint: int) -> float:
     return float(_bisected(path, q, joint, angles[changes[0]], angles[changes[0] + 1])) if len(changes) else 0.0
 
 
+def singular_by(joint: int, path: JointPath, count: int, rng: np.random.Generator) -> Floats:
+    """Joints at which the Jacobian's determinant changes its sign as one joint turns."""
+
+    def determinants(Q: Floats, values: Floats) -> Floats:
+        moved_joint = Q.copy()
+        moved_joint[:, joint] = values
+        return np.linalg.det(jacobians(path, moved_joint))
+
+    Q = rng.uniform(-np.pi, np.pi, (20 * count, 6))
+    low = Q[:, joint].copy()
+    high = low + 0.5
+    start = determinants(Q, low) < 0.0
+    change = np.flatnonzero(start != (determinants(Q, high) < 0.0))[:count]
+    Q, low, high, start = Q[change], low[change], high[change], start[change]
+    for _ in range(70):
+        middle = 0.5 * (low + high)
+        same = (determinants(Q, middle) < 0.0) == start
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    Q[:, joint] = low
+    return Q
+
+
+@pytest.mark.parametrize("joint", [1, 2, 3, 4])
+def test_a_bent_wrist_keeps_the_joints_of_exactly_singular_poses(joint: int, rng: np.random.Generator) -> None:
+    path = arm("jaco2").joint_path
+    Q = singular_by(joint, path, 300, rng)
+    assert len(Q) == 300
+    assert np.median(smallest_singular_values(path, Q)) < 1e-14
+    found = solved(six_r.BENT_WRIST, path, poses(path, Q), 1e-6)
+    assert found.distance(Q).max() < 1e-5  # where two solutions are one, half the digits are
+
+
+def test_a_bent_wrist_that_is_straight_and_square_keeps_its_joints(rng: np.random.Generator) -> None:
+    path = arm("jaco2").joint_path
+    Q = rng.integers(-2, 3, (400, 6)) * (np.pi / 2.0)
+    assert solved(six_r.BENT_WRIST, path, poses(path, Q), 1e-6).distance(Q).max() < 1e-5
+
+
+def test_far_more_samples_find_no_other_solution_of_a_bent_wrist(rng: np.random.Generator) -> None:
+    path = arm("jaco2").joint_path
+    goals = poses(path, rng.uniform(-np.pi, np.pi, (300, 6)))
+    found: Any = solved(six_r.BENT_WRIST, path, goals)
+    geometry: Any = six_r.recognise(path, six_r.BENT_WRIST)
+    rows, counts = np.zeros((300, six_r_bent.BRANCHES, 8)), np.zeros(300, dtype=np.int64)
+    six_r_bent.solve_densely(geometry.parameters, 20 * six_r_bent.SAMPLES, goals, rows, counts)
+    for i in range(300):
+        for q in rows[i, : counts[i], :6]:
+            assert np.abs(wrapped(found.q[i][found.exists[i]] - q)).max(axis=1).min() < 1e-5
+
+
 def _bisected(path: JointPath, q: Floats, joint: int, a: float, b: float) -> float:
     def value(x: float) -> float:
         v = q.copy()

@@ -318,7 +318,7 @@ def settled_rows(arm: Floats, G: Placed, rows: Floats, count: int, first: int, c
         miss = settle(arm, G, q, W)
         if miss < CERTIFIED or arm[RESIDUAL] < CERTIFIED:
             angles = (q[0], q[1], q[2], q[3], q[4], q[5])
-            kept = store(arm, rows, kept, angles, rows[row, 6], rows[row, 7] + ROUGH)
+            kept = store(arm, rows, kept, angles, rows[row, 6], rows[row, 7] + (ROUGH if is_rough(W) else 0))
     return kept
 
 

@@ -51,7 +51,7 @@ def ik(
         _every_solution(path, target, options, html, format)
         return
     if lock or redundancy:
-        raise typer.BadParameter("--lock and --redundancy go with --all.")
+        raise typer.BadParameter(f"{'--lock' if lock else '--redundancy'} goes with --all.")
     result = solve(path, target, method=method, seed=seed, trace=html is not None)
     if format is OutputFormat.json:
         report_json(result_data(result))

@@ -50,6 +50,10 @@ class Replay:
         """Whether all joints stay within their ranges and speeds."""
         return not self.faults
 
+    def __repr__(self) -> str:
+        told = " ".join(self.faults) or "The joints can do it."
+        return f"<Replay: {len(self.tips)} samples over {self.trajectory.duration:g} s. {told}>"
+
     @property
     def tip_path_length(self) -> float:
         """How far the tip travels, from sample to sample [m]."""

@@ -27,12 +27,12 @@ _BISECTIONS: Final = 70
 _ALIGNED: Final = 4  # joint
 _HEADINGS = (
     Heading("poses", "poses"),
-    Heading("targets", "how many", "d"),
+    Heading("targets", "number", "d"),
     Heading("branches", "branches", ".3f"),
     Heading("most", "most", "d"),
-    Heading("none", "without solution", "d"),
-    Heading("lost", "joints lost", "d"),
-    Heading("denser", "more when denser", "d"),
+    Heading("none", "none", "d"),
+    Heading("lost", "lost", "d"),
+    Heading("denser", "denser", "d"),
     Heading("residual", "residual", ".0e"),
 )
 
@@ -51,7 +51,10 @@ def dense_and_singular(
             ("denser", "with more solutions when sampled more densely"),
         )
     ]
-    title = f"every branch of JACO2, beside a search with {_DENSER} times as many samples"
+    title = (
+        f"every branch of JACO2: poses with none, poses that lose their own joints, and poses of which {_DENSER} times "
+        "denser samples find more"
+    )
     return Sheet("bent", title, _HEADINGS, rows), demanded
 
 
@@ -98,7 +101,7 @@ def _families(chain: UrdfChain, count: int, rng: np.random.Generator) -> Iterato
 
 def _singular(chain: UrdfChain, joint: int, count: int, rng: np.random.Generator) -> Floats:
     """Joints (count, 6) at which the determinant of the Jacobian changes its sign as one joint turns."""
-    made = list[Floats]()
+    made: list[Floats] = []
     while sum(map(len, made)) < count:
         Q = rng.uniform(-np.pi, np.pi, (1000, 6))
         low = Q[:, joint].copy()
