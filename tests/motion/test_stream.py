@@ -300,6 +300,15 @@ def test_a_unix_socket_is_the_owners_and_goes_when_it_is_closed(tmp_path):
         SocketClient(path)
 
 
+def test_closing_twice_leaves_the_socket_of_the_next_server(tmp_path):
+    path = tmp_path / "robot"
+    first = SocketServer(path)
+    first.close()
+    with SocketServer(path):
+        first.close()
+        assert path.is_socket()
+
+
 def test_a_client_says_when_the_robot_is_gone(server):
     client = SocketClient(server.address, timeout=0.05)
     received(server)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 import trimesh
@@ -58,3 +60,11 @@ def test_without_a_measure_the_section_shows_counts() -> None:
     bare = nk.reachability(robot("nao").chain("left_arm"), 5000, voxel=0.02, measure="none")
     (panel,) = with_workspace(Scene("reach", ()), bare, np.eye(4)).panels
     assert f"0 to {bare.counts.max()}" in panel.lines[-1]
+
+
+def test_a_map_of_cubes_that_all_stand_alone_is_refused_at_once(reach: nk.ReachMap) -> None:
+    counts = np.indices((70, 70, 70)).sum(axis=0) % 2
+    measure = counts.astype(np.float64)
+    dust = dataclasses.replace(reach, counts=counts, greatest=measure, mean=measure)
+    with pytest.raises(nk.NaoKinError, match=f"at most 1000000 triangles .* got {6 * 70**3}"):
+        workspace_meshes(dust)

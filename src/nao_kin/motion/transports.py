@@ -162,6 +162,8 @@ class SocketServer:
     def close(self) -> None:
         """Ends the connection and stops listening."""
         self._drop()
+        if self._listener.fileno() < 0:
+            return  # closed before, and the path may be another server's by now
         self._listener.close()
         if self._path is not None:
             self._path.unlink(missing_ok=True)

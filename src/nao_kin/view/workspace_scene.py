@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.errors import InvalidInputError
 from nao_kin.view.meshes import Mesh
 from nao_kin.view.scene import Node, Panel, Scene
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["with_workspace", "workspace_meshes"]
 
+_MOST_TRIANGLES: Final = 1_000_000  # a map of a million samples has 200 000; to make millions fewer takes minutes
 _VEIL: Final[Colour] = (0.35, 0.55, 0.85, 0.12)
 _BANDS: Final[tuple[Colour, ...]] = (  # dark blue to yellow, growing lighter, so that it reads without colours too
     (0.27, 0.00, 0.33, 1.0),
@@ -48,6 +50,9 @@ def with_workspace(scene: Scene, reach: ReachMap, T_root_base: Floats) -> Scene:
         scene: What the map is put into; may have no nodes.
         reach: The map.
         T_root_base: Pose (4, 4) of the map's base frame in the frame of the scene.
+
+    Raises:
+        InvalidInputError: See `workspace_meshes`.
     """
     node = Node(f"reach of {reach.tip_name}", None, None, T_root_base, workspace_meshes(reach))
     lines = [f"{what}: {value}" for what, value in reach.table().rows]
@@ -60,6 +65,9 @@ def workspace_meshes(reach: ReachMap) -> tuple[Mesh, ...]:
 
     The section runs along the two longer sides of the map. Its colours are bands of the greatest measure in each cube,
     or of the counts where nothing was measured.
+
+    Raises:
+        InvalidInputError: More triangles than a page can be made of in reasonable time.
     """
     values = reach.layer("counts" if reach.measure == "none" else "greatest")
     section = _section(reach.reached)
@@ -93,10 +101,14 @@ def _section(reached: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _surface(reach: ReachMap, solid: NDArray[np.bool_], part: NDArray[np.bool_], colour: Colour) -> Mesh:
     """The faces of the cubes `part` that no cube of `solid` hides."""
     padded = np.pad(solid, 1)
-    quads = []
-    for axis, step, corners in _FACES:
-        hidden = np.roll(padded, -step, axis=axis)[1:-1, 1:-1, 1:-1]
-        quads.append(np.argwhere(part & ~hidden)[:, None, :] + np.array(corners))
+    shown = [part & ~np.roll(padded, -step, axis=axis)[1:-1, 1:-1, 1:-1] for axis, step, _ in _FACES]
+    triangles = 2 * sum(map(int, map(np.count_nonzero, shown)))
+    if triangles > _MOST_TRIANGLES:
+        expected = f"at most {_MOST_TRIANGLES} triangles around its cubes; a larger voxel makes fewer"
+        raise InvalidInputError("map", expected, f"{triangles}")
+    quads = [
+        np.argwhere(faces)[:, None, :] + np.array(corners) for faces, (_, _, corners) in zip(shown, _FACES, strict=True)
+    ]
     flat = np.concatenate(quads).reshape(-1, 3)
     points, index = np.unique(flat, axis=0, return_inverse=True)
     a, b, c, d = index.reshape(-1, 4).T
