@@ -115,7 +115,10 @@ def _command(address: Address, joints: tuple[str, ...], stop: threading.Event) -
     with SocketClient(address) as client:
         middle: dict[str, float] | None = None
         while not stop.is_set():
-            message = client.receive()
+            try:
+                message = client.receive()
+            except TimeoutError:  # the loop has ended between the last message and `stop`, or is that late
+                continue
             if middle is None:
                 middle = {name: message["position"][name] for name in swung}
             angle = _SWING * math.sin(2.0 * math.pi * _SWINGS_A_SECOND * message["time"])
