@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, runtime_checkabl
 
 import numpy as np
 
-from nao_kin.arrays import Floats, frozen, rows, vector
+from nao_kin.arrays import Floats, rows, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.table import Column, Table
 
@@ -40,7 +40,6 @@ __all__ = [
     "outside_limits",
     "random_configurations",
     "sampling_range",
-    "stacked_limits",
     "value_unit",
 ]
 
@@ -296,13 +295,6 @@ def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -
         angular = 0.5 * np.array([W[2, 1] - W[1, 2], W[0, 2] - W[2, 0], W[1, 0] - W[0, 1]])
         columns.append(np.concatenate([linear, angular]))
     return np.array(columns).T
-
-
-def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:
-    """Read-only arrays (lower, upper, max_velocity) of the joints."""
-    columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
-    lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
-    return lower, upper, velocity
 
 
 def value_unit(joints: Iterable[ChainJoint], per: str = "") -> str:

@@ -23,7 +23,6 @@ from nao_kin.chain import (
     compiled_jacobians,
     compiled_poses,
     configuration,
-    stacked_limits,
 )
 from nao_kin.dh_file import format_table_file, read_table_file
 from nao_kin.dh_row import (
@@ -39,6 +38,7 @@ from nao_kin.dh_row import (
 )
 from nao_kin.dh_to_urdf import urdf_text
 from nao_kin.errors import InvalidInputError, TableFileError, UnknownNameError
+from nao_kin.joint_columns import JointColumns
 from nao_kin.kernels.path import JointPath, PathJoint, joint_path
 from nao_kin.se3 import PoseLike, as_pose
 from nao_kin.table import Column, Table
@@ -55,7 +55,7 @@ __all__ = ["Convention", "DHChain", "DHRow"]
 
 
 @dataclass(frozen=True, eq=False)
-class DHChain:
+class DHChain(JointColumns):
     """A chain given by a DH table: T_base_tip = base · A_1(q_1) … A_n(q_n) · tool.
 
     Implements the `nao_kin.chain.Chain` protocol by plain matrix products, without any model.
@@ -178,29 +178,9 @@ class DHChain:
         )
 
     @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Their names."""
-        return tuple(joint.name for joint in self.joints)
-
-    @property
     def path_joint_names(self) -> tuple[str, ...]:
         """The same: every joint has a column of its own."""
         return self.joint_names
-
-    @property
-    def lower(self) -> Floats:
-        """Least values (n,), read-only; −inf where the table has none."""
-        return self._limits[0]
-
-    @property
-    def upper(self) -> Floats:
-        """Greatest values (n,), read-only; +inf where the table has none."""
-        return self._limits[1]
-
-    @property
-    def max_velocity(self) -> Floats:
-        """Greatest speeds (n,), read-only; +inf where the table has none."""
-        return self._limits[2]
 
     @property
     def limit_rules(self) -> tuple[LimitRule, ...]:
@@ -294,10 +274,6 @@ class DHChain:
             InvalidInputError: Wrong shape or not finite.
         """
         return compiled_jacobians(self, Q)
-
-    @cached_property
-    def _limits(self) -> tuple[Floats, Floats, Floats]:
-        return stacked_limits(self.joints)
 
     def _frames(self, q: Floats) -> Floats:
         """The base and the n frames of the table in the base frame, (n + 1, 4, 4)."""

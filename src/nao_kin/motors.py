@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nao_kin.arrays import Floats, frozen, vector
-from nao_kin.chain import ChainJoint, LimitRule, stacked_limits
+from nao_kin.chain import ChainJoint, LimitRule
 from nao_kin.errors import UnknownNameError
+from nao_kin.joint_columns import JointColumns
 from nao_kin.pinocchio_layout import PinocchioLayout
 from nao_kin.urdf_path import joint_kind, joint_speed, motor_ranges
 
@@ -25,7 +26,7 @@ __all__ = ["Motors"]
 
 
 @dataclass(frozen=True, eq=False)
-class Motors:
+class Motors(JointColumns):
     """The n motors of a robot, in file order: every moving joint that follows no other one.
 
     Make one with `of`. `q` is a vector of n numbers [rad, or m for prismatic joints].
@@ -71,30 +72,6 @@ class Motors:
     def name(self) -> str:
         """What to call them in messages."""
         return f"{self.robot.name}, all motors"
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the motors, one a column of `q`."""
-        return tuple(joint.name for joint in self.joints)
-
-    @cached_property
-    def _limits(self) -> tuple[Floats, Floats, Floats]:
-        return stacked_limits(self.joints)
-
-    @property
-    def lower(self) -> Floats:
-        """Least values (n,), read-only; −inf where there is none."""
-        return self._limits[0]
-
-    @property
-    def upper(self) -> Floats:
-        """Greatest values (n,), read-only; +inf where there is none."""
-        return self._limits[1]
-
-    @property
-    def max_velocity(self) -> Floats:
-        """Greatest speeds (n,) [rad/s or m/s], read-only; +inf where none is known."""
-        return self._limits[2]
 
     @cached_property
     def limit_rules(self) -> tuple[LimitRule, ...]:

@@ -39,14 +39,8 @@ def replace_file(path: str | os.PathLike[str], content: bytes) -> Path:
             file.write(content)
         neighbour.replace(real)
     except OSError as error:
-        _forget(neighbour)
         raise type(error)(error.errno, error.strerror, str(target)) from None  # the neighbour is nobody's business
-    except BaseException:
-        _forget(neighbour)
-        raise
+    finally:
+        with contextlib.suppress(OSError):
+            neighbour.unlink(missing_ok=True)  # which it is already, unless something failed
     return target
-
-
-def _forget(file: Path) -> None:
-    with contextlib.suppress(OSError):
-        file.unlink(missing_ok=True)

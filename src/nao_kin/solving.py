@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, cast, overload
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import batch, methods
 from nao_kin.ik.loop import require_options
+from nao_kin.ik.tree import solve_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.tree import Tree
 
@@ -107,14 +108,19 @@ def solve(
         UnknownNameError: No such method or parameter, or the start names a joint that does not exist; carries near
             matches.
     """
-    if method == CLOSED and not isinstance(chain, Tree):
+    if isinstance(chain, Tree):
+        _refuse_for_trees(engine, jump)
+        wanted = cast("Mapping[str, TargetLike]", target)
+        options: dict[str, Any] = {"budget": budget, "seed": seed, "trace": trace, "parameters": parameters}
+        return solve_tree(chain, wanted, q0, method=method, tolerances=tolerances, **options)
+    if method == CLOSED:
         from nao_kin.analytic.closed import solve_closed
 
         _refuse_steps(budget, tolerances, parameters, engine=engine, trace=trace)
         return solve_closed(chain, cast("TargetLike", target), q0, tolerances=tolerances, jump=jump)
     return methods.solve(
-        cast("Any", chain),
-        cast("Any", target),
+        chain,
+        target,
         q0,
         method=method,
         tolerances=tolerances,
@@ -189,3 +195,11 @@ def _refuse_steps(
     for (name, value), nothing in zip(given.items(), usual, strict=True):
         if value is not None and value != nothing:
             raise InvalidInputError(name, "nothing for method 'closed', which takes no steps", repr(value)[:60])
+
+
+def _refuse_for_trees(engine: str, jump: float | None) -> None:
+    """Raises for the options of `solve` that several tips do not have."""
+    if engine != "compiled":
+        raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
+    if jump is not None:
+        raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))

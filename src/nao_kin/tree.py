@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_kin.arrays import frozen, rows
-from nao_kin.chain import ChainJoint, LimitRule, configuration, limit_table, stacked_limits
+from nao_kin.chain import ChainJoint, LimitRule, configuration, limit_table
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.joint_columns import JointColumns
 from nao_kin.urdf_path import Coupling, couplings_on
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ __all__ = ["Tree"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Tree:
+class Tree(JointColumns):
     """Chains from one base to several tips, with one column for each motor of their union.
 
     Make one with `nao_kin.Robot.tree` or `of_chains`. `q` is a vector of n numbers [rad, or m for prismatic joints].
@@ -88,26 +89,6 @@ class Tree:
     def tip_names(self) -> tuple[str, ...]:
         """Names of the frames whose poses are given."""
         return tuple(self.chains)
-
-    @cached_property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the joints of the union."""
-        return tuple(joint.name for joint in self.joints)
-
-    @property
-    def lower(self) -> Floats:
-        """Least values (n,), read-only; −inf where there is none."""
-        return self._limits[0]
-
-    @property
-    def upper(self) -> Floats:
-        """Greatest values (n,), read-only; +inf where there is none."""
-        return self._limits[1]
-
-    @property
-    def max_velocity(self) -> Floats:
-        """Greatest speeds (n,) [rad/s or m/s], read-only; +inf where none is known."""
-        return self._limits[2]
 
     @cached_property
     def limit_rules(self) -> tuple[LimitRule, ...]:
@@ -174,10 +155,6 @@ class Tree:
         """
         if not isinstance(tip, str) or tip not in self.chains:
             raise UnknownNameError("tip", tip, self.chains, self.name)
-
-    @cached_property
-    def _limits(self) -> tuple[Floats, Floats, Floats]:
-        return stacked_limits(self.joints)
 
     def __repr__(self) -> str:
         return f"<Tree {self.name}: {', '.join(self.joint_names)}>"

@@ -21,9 +21,9 @@ from nao_kin.chain import (
     compiled_poses,
     configuration,
     limit_table,
-    stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError
+from nao_kin.joint_columns import stacked_limits
 from nao_kin.kernels.path import JointPath, joint_path
 from nao_kin.urdf_path import Step, chain_joints, walk
 

@@ -106,7 +106,17 @@ def test_an_error_of_the_check_is_no_verdict() -> None:
     claim = replace(_claim(), check=check)
     with pytest.raises(IndexError, match="own"):
         judged(claim)
-    assert not any(tried(mutant).caught for mutant in mutants(claim))
+    with pytest.raises(IndexError, match="own"):
+        tried(next(iter(mutants(claim))))
+
+
+def _misspelt(a: float, b: float) -> float:
+    return a + c  # type: ignore[name-defined]  # noqa: F821
+
+
+def test_code_that_is_wrong_is_no_form_without_a_value() -> None:
+    with pytest.raises(NameError):
+        judged(_claim(_misspelt))
 
 
 def test_no_printed_form_fails_by_raising() -> None:

@@ -219,6 +219,10 @@ class Judgement:
         return self.claim.correction.why if self.claim.correction else self.claim.uncorrectable
 
 
+_NO_VALUE: Final = (ArithmeticError, LookupError, TimeoutError, TypeError, ValueError)
+"""What a formula raises where it has no value; any other error is a defect of its code, and is raised."""
+
+
 class _Watched:
     """A form that remembers the error it raised, so that one of the check's own is not taken for it."""
 
@@ -229,7 +233,7 @@ class _Watched:
     def __call__(self, *arguments: Any, **options: Any) -> Any:
         try:
             return self.form(*arguments, **options)
-        except Exception as error:
+        except _NO_VALUE as error:
             self.raised = error
             raise
 
@@ -239,7 +243,7 @@ def _measured(check: Check, form: Form) -> Measured:
     watched = _Watched(form)
     try:
         return check(watched)
-    except Exception as error:
+    except _NO_VALUE as error:
         if error is not watched.raised:
             raise  # the check is at fault, and its claim must not be judged by that
         return Measured(math.inf, 1, f"no value: {type(error).__name__}: {error}")

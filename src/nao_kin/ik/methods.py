@@ -6,7 +6,7 @@ import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -21,15 +21,12 @@ from nao_kin.ik.loop import Budget, Update, require_options, run_reference
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
 from nao_kin.ik.scales import chain_scales
 from nao_kin.ik.target import KINDS, Target, TargetLike
-from nao_kin.ik.tree import solve_tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
-from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
-    from nao_kin.ik.tree_problem import TreeResult
 
 __all__ = ["METHODS", "Engine", "Method", "Prepared", "prepared", "solve", "start_of"]
 
@@ -57,7 +54,6 @@ _FLOAT64 = np.dtype(np.float64)
 _IDENTITY, _PLACE = np.eye(4), (slice(0, 3), 3)
 
 
-@overload
 def solve(
     chain: Chain,
     target: TargetLike,
@@ -71,43 +67,8 @@ def solve(
     trace: bool = False,
     parameters: Mapping[str, float] | None = None,
     jump: float | None = None,
-) -> IKResult: ...
-
-
-@overload
-def solve(
-    chain: Tree,
-    target: Mapping[str, TargetLike],
-    q0: ArrayLike | Mapping[str, float] | None = None,
-    *,
-    method: str = "lm",
-    tolerances: Tolerances = TOLERANCES,
-    budget: Budget | None = None,
-    seed: int = 0,
-    trace: bool = False,
-    parameters: Mapping[str, float] | None = None,
-) -> TreeResult: ...
-
-
-def solve(
-    chain: Chain | Tree,
-    target: TargetLike | Mapping[str, TargetLike],
-    q0: ArrayLike | Mapping[str, float] | None = None,
-    *,
-    method: str = "lm",
-    tolerances: Tolerances = TOLERANCES,
-    budget: Budget | None = None,
-    seed: int = 0,
-    engine: Engine = "compiled",
-    trace: bool = False,
-    parameters: Mapping[str, float] | None = None,
-    jump: float | None = None,
-) -> IKResult | TreeResult:
-    """`nao_kin.solve`, which says what the arguments are, by a method that iterates."""
-    if isinstance(chain, Tree):
-        options: dict[str, Any] = {"method": method, "tolerances": tolerances, "budget": budget, "seed": seed}
-        _refuse_for_trees(engine, jump)
-        return solve_tree(chain, cast("Any", target), q0, trace=trace, parameters=parameters, **options)
+) -> IKResult:
+    """`nao_kin.solve`, which says what the arguments are, on one chain by a method that iterates."""
     # The usual forms by hand: compiled code checks their numbers in passing, for less than numpy takes.
     if type(target) is np.ndarray and target.dtype is _FLOAT64 and target.shape == (4, 4):
         wanted = Target("pose", target.copy())
@@ -138,14 +99,6 @@ def solve(
     if jump is not None:
         run.start, run.jump = start.copy(), allowed  # the caller may go on with theirs
     return judge(problem, run)
-
-
-def _refuse_for_trees(engine: str, jump: float | None) -> None:
-    """Raises for the options of `solve` that several tips do not have."""
-    if engine != "compiled":
-        raise InvalidInputError("engine", "none for several tips, which are solved in Python", repr(engine))
-    if jump is not None:
-        raise InvalidInputError("jump", "none for several tips; compare result.q with the start", repr(jump))
 
 
 def prepared(
