@@ -15,7 +15,7 @@ between them is searched. Solutions are moved on to the arm's own numbers, certi
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -68,6 +68,24 @@ _EXACT: Final = 1e-11  # steps of a root's search shorter than this [rad] end it
 _POINT: Final = 1e-7  # an interval this short [rad] is a point
 
 
+class _Task(NamedTuple):
+    """One goal of one arm.
+
+    Attributes:
+        arm: The arm's numbers.
+        G: Where the goal puts the last link.
+        L: What `nao_kin.analytic.six_r_loops.lines` wrote of it.
+        rows: The solutions, written.
+        W: Room to work in (3, 6, 6).
+    """
+
+    arm: Floats
+    G: Placed
+    L: Floats
+    rows: Floats
+    W: Floats
+
+
 @parallel_jit
 def solve_many(
     arm: Floats, kind: int, goals: Floats, given: Floats, slack: float, rows: Floats, counts: NDArray[np.int64]
@@ -102,68 +120,65 @@ def _solve(arm: Floats, goal: Floats, rows: Floats, samples: int) -> int:
     lines(arm, G, L)
     loops, count = np.empty((4, 3)), 0
     for i in range(shoulder_loops(arm, L, loops)):
-        count = _search(arm, G, L, (loops[i, 0], loops[i, 1], loops[i, 2]), samples, rows, count, W)
+        loop = (loops[i, 0], loops[i, 1], loops[i, 2])
+        count = _search(_Task(arm, G, L, rows, W), loop, samples, count)
     return count
 
 
 @leaf_jit
-def _product(arm: Floats, L: Floats, loop: Loop, phi: float) -> float:
+def _product(task: _Task, loop: Loop, phi: float) -> float:
     """The product of both elbows' equations."""
-    _, _, _, _, _, a, b, S2, _ = state(arm, L, loop, phi)
+    _, _, _, _, _, a, b, S2, _ = state(task.arm, task.L, loop, phi)
     return a * a - b * b * S2
 
 
 @leaf_jit
-def _both(arm: Floats, L: Floats, loop: Loop, phi: float) -> tuple[float, float]:
+def _both(task: _Task, loop: Loop, phi: float) -> tuple[float, float]:
     """The product of both elbows' equations, and its slope."""
-    _, _, _, _, _, a, b, S2, slope = state(arm, L, loop, phi)
+    _, _, _, _, _, a, b, S2, slope = state(task.arm, task.L, loop, phi)
     return a * a - b * b * S2, slope
 
 
 @jit
-def _search(arm: Floats, G: Placed, L: Floats, loop: Loop, N: int, rows: Floats, count: int, W: Floats) -> int:
+def _search(task: _Task, loop: Loop, N: int, count: int) -> int:
     """Writes the solutions of one loop that are not written yet; the number of rows then."""
     if 0.0 <= loop[1] < _POINT:
-        return _write(arm, G, L, loop, 0.5 * math.pi, math.inf, rows, count, W)
+        return _write(task, loop, 0.5 * math.pi, math.inf, count)
     V, width = np.empty((N + 1, 2)), 2.0 * math.pi / N
     most = 0.0
     for i in range(N):  # no sample at the ends, which are at 0 and π
-        V[i, 0], V[i, 1] = _both(arm, L, loop, width * (i + 0.5))
+        V[i, 0], V[i, 1] = _both(task, loop, width * (i + 0.5))
         most = max(most, abs(V[i, 0]))
     size = math.sqrt(most)  # of one elbow's equation
     V[N, 0], V[N, 1] = V[0, 0], V[0, 1]
     for i in range(N):
         left, start, end = width * (i + 0.5), (V[i, 0], V[i, 1]), (V[i + 1, 0], V[i + 1, 1])
         if _crowded(start, end, width):
-            count = _walk(arm, G, L, loop, left, width, start, end, size, rows, count, W)
+            count = _walk(task, loop, left, width, start, end, size, count)
         else:
-            count = _between(arm, G, L, loop, left, width, start, end, size, rows, count, W)
+            count = _between(task, loop, left, width, start, end, size, count)
     return count
 
 
 @leaf_jit
 def _walk(
-    arm: Floats,
-    G: Placed,
-    L: Floats,
+    task: _Task,
     loop: Loop,
     left: float,
     width: float,
     start: Two,
     end: Two,
     size: float,
-    rows: Floats,
     count: int,
-    W: Floats,
 ) -> int:
     """Writes the solutions between two samples where roots may crowd, in steps as short as they need to be."""
     unit, at, step = width / _PARTS, 0, _PARTS // 4
     while at < _PARTS:
-        there = _both(arm, L, loop, left + unit * (at + step)) if at + step < _PARTS else end
+        there = _both(task, loop, left + unit * (at + step)) if at + step < _PARTS else end
         if step > 1 and _crowded(start, there, unit * step):
             step //= 4
             continue
-        count = _between(arm, G, L, loop, left + unit * at, unit * step, start, there, size, rows, count, W)
+        count = _between(task, loop, left + unit * at, unit * step, start, there, size, count)
         at, start = at + step, there
         while step < _PARTS // 4 and at % (4 * step) == 0:
             step *= 4
@@ -189,32 +204,28 @@ def _crowded(start: Two, end: Two, width: float) -> bool:
 
 @leaf_jit
 def _between(
-    arm: Floats,
-    G: Placed,
-    L: Floats,
+    task: _Task,
     loop: Loop,
     left: float,
     width: float,
     start: Two,
     end: Two,
     size: float,
-    rows: Floats,
     count: int,
-    W: Floats,
 ) -> int:
     """Writes the solutions between two samples, of which there is one or, if their slopes point to zero, two."""
     (f, slope), (g, end_slope), right = start, end, left + width
     if (f < 0.0) != (g < 0.0):
-        return _write(arm, G, L, loop, _root(arm, L, loop, left, right, f, g), _ZERO * size, rows, count, W)
+        return _write(task, loop, _root(task, loop, left, right, f, g), _ZERO * size, count)
     sign = -1.0 if f < 0.0 else 1.0
     down, up = -sign * slope, sign * end_slope
     if down <= 0.0 or up <= 0.0:
         return count
     # Where the tangents meet is below the dip, if the function bends towards them as it does near a dip.
     depth = sign * (f * up + g * down) - down * up * width
-    if depth >= _shallow(arm) * size * size * (down + up):
+    if depth >= _shallow(task.arm) * size * size * (down + up):
         return count
-    return _dip(arm, G, L, loop, left, right, sign, size, rows, count, W)
+    return _dip(task, loop, left, right, sign, size, count)
 
 
 @leaf_jit
@@ -226,43 +237,39 @@ def _shallow(arm: Floats) -> float:
 
 @leaf_jit
 def _dip(
-    arm: Floats,
-    G: Placed,
-    L: Floats,
+    task: _Task,
     loop: Loop,
     a: float,
     b: float,
     sign: float,
     size: float,
-    rows: Floats,
     count: int,
-    W: Floats,
 ) -> int:
     """Two roots, a double one, or none, between two samples of one sign whose slopes point to zero."""
     left, right, near = a, b, 1e-3 * size
     for _ in range(_SECTIONS):
         middle = 0.5 * (a + b)
-        value, slope = _both(arm, L, loop, middle)
+        value, slope = _both(task, loop, middle)
         if sign * value < 0.0:
-            f, g = _product(arm, L, loop, left), _product(arm, L, loop, right)
-            count = _write(arm, G, L, loop, _root(arm, L, loop, left, middle, f, value), near, rows, count, W)
-            return _write(arm, G, L, loop, _root(arm, L, loop, middle, right, value, g), near, rows, count, W)
+            f, g = _product(task, loop, left), _product(task, loop, right)
+            count = _write(task, loop, _root(task, loop, left, middle, f, value), near, count)
+            return _write(task, loop, _root(task, loop, middle, right, value, g), near, count)
         if sign * slope < 0.0:
             a = middle
         else:
             b = middle
-    if abs(_product(arm, L, loop, 0.5 * (a + b))) < _shallow(arm) * size * size:
-        return _write(arm, G, L, loop, 0.5 * (a + b), near, rows, count, W)
+    if abs(_product(task, loop, 0.5 * (a + b))) < _shallow(task.arm) * size * size:
+        return _write(task, loop, 0.5 * (a + b), near, count)
     return count
 
 
 @leaf_jit
-def _root(arm: Floats, L: Floats, loop: Loop, a: float, b: float, f: float, g: float) -> float:
+def _root(task: _Task, loop: Loop, a: float, b: float, f: float, g: float) -> float:
     """The root between two parameters with values of different signs, by the Illinois rule with bisections."""
     kept, last = 0, a
     for i in range(_BISECTIONS):
         x = b - g * (b - a) / (g - f) if i % 4 != 3 and g != f else 0.5 * (a + b)
-        value = _product(arm, L, loop, x)
+        value = _product(task, loop, x)
         if value == 0.0 or abs(x - last) < _EXACT:
             return x
         last = x
@@ -278,26 +285,23 @@ def _root(arm: Floats, L: Floats, loop: Loop, a: float, b: float, f: float, g: f
 
 
 @leaf_jit
-def _write(
-    arm: Floats, G: Placed, L: Floats, loop: Loop, phi: float, near: float, rows: Floats, count: int, W: Floats
-) -> int:
+def _write(task: _Task, loop: Loop, phi: float, near: float, count: int) -> int:
     """Writes the solutions of a parameter: of the better elbow, and of the other one if it nearly is one."""
-    _, _, _, _, _, a, b, S2, _ = state(arm, L, loop, phi)
+    _, _, _, _, _, a, b, S2, _ = state(task.arm, task.L, loop, phi)
     S = math.sqrt(max(S2, 0.0))
     plus_elbow, minus_elbow = abs(a - b * S), abs(a + b * S)
     if plus_elbow <= minus_elbow or plus_elbow < near:
-        count = _settled(arm, G, L, loop, phi, 1.0, rows, count, W)
+        count = _settled(task, loop, phi, 1.0, count)
     if minus_elbow < plus_elbow or minus_elbow < near:
-        count = _settled(arm, G, L, loop, phi, -1.0, rows, count, W)
+        count = _settled(task, loop, phi, -1.0, count)
     return count
 
 
 @leaf_jit
-def _settled(
-    arm: Floats, G: Placed, L: Floats, loop: Loop, phi: float, bent: float, rows: Floats, count: int, W: Floats
-) -> int:
+def _settled(task: _Task, loop: Loop, phi: float, bent: float, count: int) -> int:
     """Writes the solution of a parameter and an elbow, if it is one and is not there yet."""
-    q6, c1, s1, x, y, _, _, S2, _ = state(arm, L, loop, phi)
+    arm, G, rows, W = task.arm, task.G, task.rows, task.W
+    q6, c1, s1, x, y, _, _, S2, _ = state(arm, task.L, loop, phi)
     square, upper, lower = x * x + y * y, arm[UPPER], arm[LOWER]
     S = bent * math.sqrt(max(S2, 0.0))
     t = 0.5 * (lower * lower - upper * upper + square)

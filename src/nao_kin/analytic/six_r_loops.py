@@ -48,7 +48,7 @@ _AT_END: Final = 1e-4  # sine of the loop's parameter from which on its ends' li
 def lines(arm: Floats, G: Placed, L: Floats) -> None:
     """C from the first joint's point [m] and the direction of axis 5, each as constant, cosine's and sine's part of q6.
 
-    In the shoulder's axes, z along the first joint's and x such that the parallel axes have no y. Written to L (8, 3),
+    In the shoulder's axes, z along the first joint's and x such that the parallel axes have no y. Written to L (10, 3),
     with those axes' direction (x, ., z) and the way from the second joint's point to the first one's in the last rows.
     """
     k1, h, k6, D = axis(arm, 0), axis(arm, 1), axis(arm, 5), point(arm, 5)
@@ -170,19 +170,23 @@ def _extreme(arm: Floats, L: Floats, a: float, b: float, sign: float) -> float:
 
 
 @leaf_jit
+def _last_joint(loop: Loop, phi: float) -> tuple[float, float, float, float]:
+    """q6, the side of the shoulder, the slope of q6 along the loop, and the parameter's sine; 1 on a whole turn."""
+    middle, half, side = loop
+    if half < 0.0:
+        return phi, side, 1.0, 1.0
+    sine, cosine = sine_cosine(phi)
+    return middle + half * cosine, 1.0 if sine >= 0.0 else -1.0, -half * sine, sine
+
+
+@leaf_jit
 def state(arm: Floats, L: Floats, loop: Loop, phi: float) -> State:
     """What a loop's parameter stands for: q6, cosine and sine of q1, C in the plane, and both elbows' equations.
 
     a ± b S are the equations of the two elbows, times |C|² [m⁴]; a, b and S² come next, and last the slope of their
     product along the loop. It is found as the values are, by the chain rule.
     """
-    q6, half, side = loop
-    rate, sine = 1.0, 1.0
-    if half < 0.0:
-        q6 = phi
-    else:
-        sine, c = sine_cosine(phi)
-        q6, side, rate = q6 + half * c, (1.0 if sine >= 0.0 else -1.0), -half * sine
+    half, (q6, side, rate, sine) = loop[1], _last_joint(loop, phi)
     s, c = sine_cosine(q6)
     x, y = L[0, 0] + L[1, 0] * c + L[2, 0] * s, L[0, 1] + L[1, 1] * c + L[2, 1] * s
     z = L[0, 2] + L[1, 2] * c + L[2, 2] * s

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from nao_kin.robot import Robot
     from nao_kin.trajectory import Trajectory
 
-__all__ = ["Reason", "Refusal", "motor_joints", "refusal_where", "refusals", "said"]
+__all__ = ["Attempted", "Reason", "Refusal", "motor_joints", "refusal_where", "refusals", "said"]
 
 Reason: TypeAlias = Literal[
     "below its range",
@@ -63,6 +63,27 @@ class Refusal:
     def __str__(self) -> str:
         since = f"from {self.time:.3f} s on, worst at {self.worst:.3f} s"
         return f"{self.what} is {self.reason} by {self.amount:.3g} {self.unit} {since}"
+
+
+class Attempted:
+    """A motion that was worked out and measured: its ``attempt``, and what of it the robot cannot do, ``refused``."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+
+        @property
+        def attempt(self) -> Trajectory:
+            """What the joints would do."""
+
+        @property
+        def refused(self) -> tuple[Refusal, ...]:
+            """What of it cannot be done."""
+
+    @property
+    def trajectory(self) -> Trajectory | None:
+        """The joints over time; None where the motion is refused."""
+        return None if self.refused else self.attempt
 
 
 def motor_joints(robot: Robot) -> tuple[ChainJoint, ...]:

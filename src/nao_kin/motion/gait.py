@@ -20,7 +20,7 @@ from nao_kin.analytic.body import BodyBatchResult, body_ik, body_ik_batch
 from nao_kin.arrays import frozen
 from nao_kin.errors import InvalidInputError
 from nao_kin.motion.balance import centres_of_mass, support_margins
-from nao_kin.motion.feasible import Refusal, refusal_where, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, refusal_where, refusals, said
 from nao_kin.motion.walk_command import WalkCommand
 from nao_kin.motion.walk_plan import WalkPlan, hexapod_legs
 from nao_kin.se3 import translation
@@ -44,7 +44,7 @@ _SHARE: Final = 0.01  # to which it is found, relative
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Walk:
+class Walk(Attempted):
     """A walk, measured.
 
     Attributes:
@@ -74,11 +74,6 @@ class Walk:
     def walkable(self) -> bool:
         """Whether it can be walked: within reach, ranges, speeds and balance, everything measured."""
         return not self.refused
-
-    @property
-    def trajectory(self) -> Trajectory | None:
-        """The joints over time; None where the walk is refused."""
-        return self.attempt if self.walkable else None
 
     @property
     def message(self) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from nao_kin.arrays import frozen
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.feasible import Refusal, motor_joints, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusals, said
 from nao_kin.motion.profile import PEAK, minimum_jerk
 from nao_kin.table import Column, Table
 from nao_kin.trajectory import Trajectory
@@ -35,7 +35,7 @@ _ROUND_UP: Final = 1.0 + 1e-12  # what is stretched to a joint's greatest speed 
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Played:
+class Played(Attempted):
     """A motion through keyframes.
 
     Attributes:
@@ -51,11 +51,6 @@ class Played:
     times: Floats
     asked: Floats
     refused: tuple[Refusal, ...]
-
-    @property
-    def trajectory(self) -> Trajectory | None:
-        """The joints over time; None where the motion is refused."""
-        return None if self.refused else self.attempt
 
     @property
     def message(self) -> str:

@@ -24,7 +24,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.ik.loop import Budget
 from nao_kin.ik.methods import solve
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
-from nao_kin.motion.feasible import Refusal, motor_joints, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusals, said
 from nao_kin.motion.profile import PEAK, minimum_jerk
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory import Trajectory
@@ -56,7 +56,7 @@ _ONE_START: Final = Budget(restarts=0)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Pointing:
+class Pointing(Attempted):
     """A gesture, measured.
 
     Attributes:
@@ -87,11 +87,6 @@ class Pointing:
     def looks(self) -> bool:
         """Whether the camera's axis does."""
         return self.head is not None and self.head.solved
-
-    @property
-    def trajectory(self) -> Trajectory | None:
-        """The joints over time; None where the arm cannot point there, or the motion is refused."""
-        return None if self.refused else self.attempt
 
     @property
     def message(self) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 
 from nao_kin.arrays import frozen, vector
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.feasible import Refusal, motor_joints, refusal_where, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusal_where, refusals, said
 from nao_kin.motion.feet import both_feet, wanted_angles
 from nao_kin.se3 import PoseLike, as_pose, rotation_distance, rotation_z
 from nao_kin.tolerances import TOLERANCES, Tolerances
@@ -49,7 +49,7 @@ _FIRST_STEP: Final = 1e-3  # [rad]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class TorsoMotion:
+class TorsoMotion(Attempted):
     """A motion of the torso over feet that stay, measured by the whole robot's forward kinematics.
 
     Attributes:
@@ -65,11 +65,6 @@ class TorsoMotion:
     rotation_errors: Floats
     yaw: Floats
     refused: tuple[Refusal, ...]
-
-    @property
-    def trajectory(self) -> Trajectory | None:
-        """The joints over time; None where the motion is refused."""
-        return None if self.refused else self.attempt
 
     @property
     def message(self) -> str:

@@ -146,7 +146,6 @@ function finish({ viewer, state, stage, goals, tip, player, exchange, switches }
   if (player) player.onfold = layOut;
   if (stage) {
     man = new CameraMan(viewer, stagePlace, freePart, subjects);
-    stage.setDark(toolbar.isDark);
     preparePrinting(viewer, pane);
   }
   state.changed("start");

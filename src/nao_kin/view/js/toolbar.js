@@ -36,14 +36,20 @@ class Toolbar {
     ask.id = "keys";
     this.element = el("nav", { id: "toolbar" }, menu, this.unit, this.theme, frame, ask);
     this.element.setAttribute("aria-label", "View");
-    this.darkness = window.matchMedia("(prefers-color-scheme: dark)");
-    this.darkness.addEventListener("change", () => actions.dark(this.isDark));
+    const darkness = window.matchMedia("(prefers-color-scheme: dark)");
+    darkness.addEventListener("change", () => this.setDark(darkness.matches));
+    this.setDark(darkness.matches);
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
   get isDark() {
-    const chosen = document.documentElement.dataset.theme;
-    return chosen ? chosen === "dark" : this.darkness.matches;
+    return document.documentElement.dataset.theme === "dark";
+  }
+
+  // As the system has it, or as somebody chose since: whichever comes last.
+  setDark(dark) {
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    this.actions.dark(dark);
   }
 
   switchUnits() {
@@ -52,8 +58,7 @@ class Toolbar {
   }
 
   switchTheme() {
-    document.documentElement.dataset.theme = this.isDark ? "light" : "dark";
-    this.actions.dark(this.isDark);
+    this.setDark(!this.isDark);
   }
 
   key(event) {
