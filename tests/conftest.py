@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.known import KNOWN_ROBOTS, example_robot_data_share
+from nao_kin.robot.known import KNOWN_ROBOTS, example_robot_data_share
 
 if TYPE_CHECKING:
     from pathlib import Path

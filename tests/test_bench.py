@@ -10,11 +10,11 @@ import pytest
 from typer.testing import CliRunner
 
 import nao_kin as nk
+from nao_kin.bench import peers as peers_module
+from nao_kin.bench.arms import many_chains
+from nao_kin.bench.contest import Contender, Task
+from nao_kin.bench.peers import Peer, Unsuited
 from nao_kin.cli.app import application
-from nao_kin.cli.bench import peers as peers_module
-from nao_kin.cli.bench.arms import many_chains
-from nao_kin.cli.bench.contest import Contender, Task
-from nao_kin.cli.bench.peers import Peer, Unsuited
 from tests.conftest import needs
 
 if TYPE_CHECKING:
@@ -156,8 +156,8 @@ def test_methods_reach_near_targets_and_none_lies() -> None:
 
 
 def test_convergence_plots_are_pictures(tmp_path: Path) -> None:
-    from nao_kin.cli.bench.convergence import draw
-    from nao_kin.cli.bench.method_sets import easy
+    from nao_kin.bench.convergence import draw
+    from nao_kin.bench.method_sets import easy
 
     near = easy(nk.load("nao_v33_h21").chain("left_arm"), "position", 5, np.random.default_rng(0))
     (written,) = draw([near], tmp_path)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_kin.cli.bench import claims
-from nao_kin.cli.bench.claims import Figures
-from nao_kin.cli.bench.closed_beside import CLOSED, Beside
-from nao_kin.cli.bench.method_sets import Outcome, TargetSet
+from nao_kin.bench import claims
+from nao_kin.bench.claims import Figures
+from nao_kin.bench.closed_beside import CLOSED, Beside
+from nao_kin.bench.method_sets import Outcome, TargetSet
 
 N = 100
 

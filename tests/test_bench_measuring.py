@@ -10,15 +10,15 @@ import pytest
 import typer
 
 import nao_kin as nk
-from nao_kin.cli.bench import peers as peers_module
-from nao_kin.cli.bench.arms import main_arm, many_chains
-from nao_kin.cli.bench.contest import Contender, Task, contest
-from nao_kin.cli.bench.edge_targets import bad_targets, farthest, near_full_reach
-from nao_kin.cli.bench.measuring import in_turns, one_thread
-from nao_kin.cli.bench.peers import installed_peers
-from nao_kin.cli.bench.referee import NEAR, Referee
-from nao_kin.cli.bench.sheet import Goal, Heading, Machine, Sheet, conclude
-from nao_kin.cli.output import OutputFormat
+from nao_kin.bench import peers as peers_module
+from nao_kin.bench.arms import main_arm, many_chains
+from nao_kin.bench.contest import Contender, Task, contest
+from nao_kin.bench.edge_targets import bad_targets, farthest, near_full_reach
+from nao_kin.bench.measuring import in_turns, one_thread
+from nao_kin.bench.peers import installed_peers
+from nao_kin.bench.referee import NEAR, Referee
+from nao_kin.bench.sheet import Goal, Heading, Machine, Sheet, conclude
+from nao_kin.output import OutputFormat
 
 
 def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:
@@ -76,7 +76,7 @@ def test_targets_of_the_edges_are_what_they_claim(rng: np.random.Generator) -> N
 
 
 def test_without_the_extra_the_jaco2_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("nao_kin.known.example_robot_data_share", lambda: None)
+    monkeypatch.setattr("nao_kin.robot.known.example_robot_data_share", lambda: None)
     arm, notes = main_arm()
     assert arm.robot.name == "jaco2"
     assert "Measured on jaco2 instead" in notes[0]

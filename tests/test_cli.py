@@ -13,7 +13,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.se3 import rpy
-from nao_kin.trajectory.files import write_trajectory
+from nao_kin.trajectory.files.reading import write_trajectory
 
 
 def run(*arguments: object, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import nao_kin as nk
-from nao_kin.dh_row import dh_matrix
+from nao_kin.dh.dh_row import dh_matrix
 from nao_kin.documents.chains import DOCUMENT_CHAINS
 from nao_kin.errors import InvalidInputError, TableFileError
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import nao_kin as nk
-from nao_kin.cli.bench import bench
+from nao_kin.bench import bench
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -14,7 +14,7 @@ from nao_kin.documents.chains import DOCUMENT_CHAINS
 from tests.conftest import BUNDLED, robot
 
 if TYPE_CHECKING:
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 
 def product(path: JointPath, q: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import nao_kin as nk
-from nao_kin.cli.bench import bench
+from nao_kin.bench import bench
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,9 +45,9 @@ def module(name: str) -> ModuleType:
 
 
 SOURCES: dict[tuple[str, str], Callable[[], str]] = {
-    ("README.md", "15 times"): lambda: f"{module('cli.bench.fk')._GOALS['Jacobians']:g} times",
-    ("README.md", "4 times"): lambda: f"{module('cli.bench.ik')._POSE_GOALS[0]:g} times",
-    ("README.md", "3 times"): lambda: f"{module('cli.bench.reach')._TIMES:g} times",
+    ("README.md", "15 times"): lambda: f"{module('bench.bench_fk')._GOALS['Jacobians']:g} times",
+    ("README.md", "4 times"): lambda: f"{module('bench.bench_ik')._POSE_GOALS[0]:g} times",
+    ("README.md", "3 times"): lambda: f"{module('bench.bench_reach')._TIMES:g} times",
     ("check.md", "64 MB"): lambda: f"{module('checks.rules.meshes')._BYTES // 1024**2} MB",
     ("many-solutions.md", "0.5 rad"): lambda: "0.5 rad",  # the argument beside it
     ("notation.md", "45.11 mm"): lambda: f"{below_ankle('l_sole'):.2f} mm",

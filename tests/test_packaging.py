@@ -18,7 +18,7 @@ import pytest
 import yaml
 
 import nao_kin as nk
-from nao_kin.documents.ledger import claims
+from nao_kin.documents.judging import claims
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

@@ -13,7 +13,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.replacing import replace_file
-from nao_kin.trajectory.files import write_trajectory
+from nao_kin.trajectory.files.reading import write_trajectory
 from tests.conftest import robot
 
 if TYPE_CHECKING:

@@ -75,7 +75,7 @@ def test_an_unknown_name_comes_with_near_matches(ask, kind: str, near: str) -> N
 
 
 def test_without_the_extra_the_error_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("nao_kin.known.example_robot_data_share", lambda: None)
+    monkeypatch.setattr("nao_kin.robot.known.example_robot_data_share", lambda: None)
     with pytest.raises(MissingExtraError, match=r"pip install 'nao_kin\[robots\]'") as caught:
         nk.load("ur5")
     assert caught.value.extra == "robots"

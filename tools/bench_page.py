@@ -23,8 +23,8 @@ import sys
 from pathlib import Path
 from typing import Any, Final
 
-from nao_kin.cli.bench.peers import PEERS
-from nao_kin.cli.bench.sheet import Goal, Heading, Machine
+from nao_kin.bench.peers import PEERS
+from nao_kin.bench.sheet import Goal, Heading, Machine
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 KEPT: Final = ROOT / "docs" / "bench"

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 import nao_kin as nk
 from nao_kin.checks.catalogue import CATALOGUE
 from nao_kin.documents.erratum import as_markdown
-from nao_kin.known import ALIASES, KNOWN_ROBOTS
+from nao_kin.robot.known import ALIASES, KNOWN_ROBOTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -35,7 +35,7 @@ COMPARED = 16  # every so many mutants, by yourdfpy too: about 500 of 20 000 tha
 
 def sources() -> list[Path]:
     """The files that mutants are made of: ours, and those of example-robot-data where it is installed."""
-    from nao_kin.known import KNOWN_ROBOTS, example_robot_data_share, robot_file
+    from nao_kin.robot.known import KNOWN_ROBOTS, example_robot_data_share, robot_file
 
     ours = [robot_file(robot) for robot in KNOWN_ROBOTS.values() if robot.source == "bundled"]
     share = example_robot_data_share()

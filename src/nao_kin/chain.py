@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from nao_kin.arrays import Floats, rows, vector
+from nao_kin.arrays import Floats, frozen, rows, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.table import Column, Table
 
@@ -18,12 +19,13 @@ if TYPE_CHECKING:
     import pinocchio as pin
     from numpy.typing import ArrayLike
 
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 __all__ = [
     "Chain",
     "ChainJoint",
     "JacobianFrame",
+    "JointColumns",
     "JointSpace",
     "LimitRule",
     "OutsideLimit",
@@ -40,6 +42,7 @@ __all__ = [
     "outside_limits",
     "random_configurations",
     "sampling_range",
+    "stacked_limits",
     "value_unit",
 ]
 
@@ -166,6 +169,47 @@ class Chain(JointSpace, Protocol):
 
     def jacobians(self, Q: ArrayLike) -> Floats:
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
+
+
+def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:
+    """Read-only arrays (lower, upper, max_velocity) of the joints."""
+    columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
+    lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
+    return lower, upper, velocity
+
+
+class JointColumns:
+    """Names and limits of what has ``joints``: the part of a `JointSpace` that follows from them."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def joints(self) -> tuple[ChainJoint, ...]:
+            """The n joints, in the order of `q`."""
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """Their names, one a column of `q`."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def lower(self) -> Floats:
+        """Least values (n,) [rad or m], read-only; −inf where there is none."""
+        return self._limits[0]
+
+    @property
+    def upper(self) -> Floats:
+        """Greatest values (n,) [rad or m], read-only; +inf where there is none."""
+        return self._limits[1]
+
+    @property
+    def max_velocity(self) -> Floats:
+        """Greatest speeds (n,) [rad/s or m/s], read-only; +inf where none is known."""
+        return self._limits[2]
+
+    @cached_property
+    def _limits(self) -> tuple[Floats, Floats, Floats]:
+        return stacked_limits(self.joints)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,11 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, Literal, cast, overload
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import batch, methods
-from nao_kin.ik.loop import require_options
-from nao_kin.ik.tree import solve_tree
+from nao_kin.ik import batch
+from nao_kin.ik import single as methods
+from nao_kin.ik.reference_loop import require_options
+from nao_kin.ik.tips.tree_solver import solve_tree
+from nao_kin.robot.tree import Tree
 from nao_kin.tolerances import TOLERANCES, Tolerances
-from nao_kin.tree import Tree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
 
     from nao_kin.chain import Chain
     from nao_kin.ik.batch import BatchResult
-    from nao_kin.ik.loop import Budget
-    from nao_kin.ik.methods import Engine
     from nao_kin.ik.problem import IKResult
+    from nao_kin.ik.reference_loop import Budget
+    from nao_kin.ik.single import Engine
     from nao_kin.ik.target import Target, TargetLike
-    from nao_kin.ik.tree_problem import TreeResult
+    from nao_kin.ik.tips.tree_problem import TreeResult
 
 __all__ = ["CLOSED", "solve", "solve_batch"]
 

@@ -13,7 +13,7 @@ from tests.conftest import robot
 if TYPE_CHECKING:
     from nao_kin.analytic.form import GoalKind
     from nao_kin.arrays import Floats
-    from nao_kin.urdf_chain import UrdfChain
+    from nao_kin.robot.urdf_chain import UrdfChain
 
 FREE = {"x": 0.0, "y": 0.0, "z": 0.0}
 

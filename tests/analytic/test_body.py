@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic.body import BodyResult, body_ik, body_ik_batch
+from nao_kin.analytic.hexapod.body import BodyResult, body_ik, body_ik_batch
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik.problem import Status
 from nao_kin.se3 import from_xyz_rpy

@@ -117,7 +117,7 @@ def test_batches_do_not_depend_on_order_or_on_chunks(rng: np.random.Generator, m
     whole = nk.solve_all_batch(chain, T)
     order = rng.permutation(60)
     np.testing.assert_array_equal(nk.solve_all_batch(chain, T[order]).q, whole.q[order])
-    monkeypatch.setattr("nao_kin.analytic.batch._BLOCK", 7)
+    monkeypatch.setattr("nao_kin.analytic.solution_batch._BLOCK", 7)
     again = nk.solve_all_batch(chain, T)
     for name in ("q", "codes", "branches", "position_error", "rotation_error"):
         np.testing.assert_array_equal(getattr(again, name), getattr(whole, name))

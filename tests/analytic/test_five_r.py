@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import nao_kin as nk
-from nao_kin.analytic import five_r
 from nao_kin.analytic.form import Geometry, Mismatch
+from nao_kin.analytic.six_r import five_r
 from nao_kin.chain import random_configurations
-from nao_kin.dh import DHChain
+from nao_kin.dh.dh_chain import DHChain
 from tests.analytic.searching import wrapped
 from tests.conftest import robot
 

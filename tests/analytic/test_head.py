@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic import symbolic_head
-from nao_kin.analytic.looking import gaze, look_at
-from nao_kin.analytic.symbolic_head import derive_head
+from nao_kin.analytic.nao import symbolic_head
+from nao_kin.analytic.nao.looking import gaze, look_at
+from nao_kin.analytic.nao.symbolic_head import derive_head
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError, MissingExtraError
 from tests.analytic.goals import CAMERAS, chain_of, move

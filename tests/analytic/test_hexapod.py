@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic import hexapod, hexapod_kernel
 from nao_kin.analytic.form import Geometry, Mismatch
+from nao_kin.analytic.hexapod import hexapod_leg as hexapod
+from nao_kin.analytic.hexapod import hexapod_leg_kernel as hexapod_kernel
 from nao_kin.chain import Chain, random_configurations
 from nao_kin.kernels.forward import jacobians, poses
 from tests.analytic.searching import POSITION, Branches, branches, moved, newton, random_poses, replace_path, wrapped
@@ -18,7 +19,7 @@ from tests.analytic.walkers import HIP, LEGS, SHIN, THIGH, phantomx_legs, round_
 from tests.conftest import robot
 
 if TYPE_CHECKING:
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 
 def solved(path: JointPath, goals: np.ndarray, slack: float = 0.0) -> Branches:

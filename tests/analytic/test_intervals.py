@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic.intervals import elbow_yaw_intervals
+from nao_kin.analytic.nao.intervals import elbow_yaw_intervals
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError
 from tests.analytic.goals import chain_of

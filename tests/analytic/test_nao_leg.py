@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic import leg_kernel, nao_leg
 from nao_kin.analytic.form import Geometry, Mismatch
+from nao_kin.analytic.nao import leg_kernel, nao_leg
 from nao_kin.chain import Chain, in_limits, random_configurations
 from nao_kin.kernels.forward import jacobians, poses
 from nao_kin.se3 import from_xyz_rpy
@@ -18,7 +18,7 @@ from tests.analytic.searching import POSE, Branches, branches, moved, newton, ra
 from tests.conftest import needs_examples, robot
 
 if TYPE_CHECKING:
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 LEGS = [
     ("nao", "torso", "LLeg"),

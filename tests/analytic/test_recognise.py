@@ -15,7 +15,7 @@ from nao_kin.analytic.matching import matched
 from nao_kin.chain import random_configurations
 from nao_kin.documents.kofinas import V33_LENGTHS, arm, head
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.kernels.path import held
+from nao_kin.kernels.joint_path import held
 from tests.analytic.goals import chain_of, errors, move
 
 BY_NAME = {form.name: form for form in FORMS}

@@ -7,7 +7,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.analytic.redundancy import self_motion
-from nao_kin.dh import DHChain
+from nao_kin.dh.dh_chain import DHChain
 from nao_kin.errors import InvalidInputError, UnknownNameError
 
 ROWS = [  # a shoulder, an elbow and a wrist, each of axes through one point

@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic import six_r, six_r_bent, six_r_elbow, six_r_general
 from nao_kin.analytic.form import Mismatch
+from nao_kin.analytic.six_r import elbow as six_r_elbow
+from nao_kin.analytic.six_r import general as six_r_general
+from nao_kin.analytic.six_r import recognising as six_r
+from nao_kin.analytic.six_r import six_r_bent_wrist as six_r_bent
 from nao_kin.kernels.audit import tips
 from nao_kin.kernels.forward import jacobians, poses
 from nao_kin.se3 import from_xyz_rpy
@@ -21,7 +24,7 @@ from tests.conftest import needs_examples, robot
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 ENDS = {"kinova": ("j2s6s200_link_base", "j2s6s200_end_effector"), "jaco2": ("link_base", "end_effector")}
 ENDS |= dict.fromkeys(("ur3", "ur5", "ur10"), ("base_link", "ee_link")) | {"z1": ("link00", "link06")}

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
+from nao_kin.bench.all_solutions import apart, least_singular_value, multi_start
 from nao_kin.chain import random_configurations
-from nao_kin.cli.bench.all_solutions import apart, least_singular_value, multi_start
 from tests.analytic.goals import asked, chain_of, errors, given_of, locked_of, move, targets_of
 
 if TYPE_CHECKING:

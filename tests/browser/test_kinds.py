@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.analytic.body import body_ik
-from nao_kin.motion.footfall import LEGS
-from nao_kin.motion.gait import walk
-from nao_kin.motion.walk_command import WalkCommand
+from nao_kin.analytic.hexapod.body import body_ik
+from nao_kin.motion.hexapod.footfall import LEGS
+from nao_kin.motion.hexapod.gait import walk
+from nao_kin.motion.hexapod.walk_command import WalkCommand
 from nao_kin.se3 import from_xyz_rpy
 from tests.browser.seeing import drive, number, pixels, robot_mask, slide, slide_all, tip, tip_shown
 from tests.conftest import robot

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from nao_kin.robot import load
+from nao_kin.robot.robot import load
 from nao_kin.view.export import export_html, show
 from nao_kin.view.record import node_paths
 from nao_kin.view.robot_scene import robot_scene

@@ -13,7 +13,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.checks.catalogue import CATALOGUE
-from nao_kin.checks.departure import departure_finding
+from nao_kin.checks.departure_finding import departure_finding
 from nao_kin.cli.app import main
 
 ROOT = Path(__file__).parent.parent.parent
@@ -190,7 +190,7 @@ def test_a_departure_without_a_joint_stands_at_the_root() -> None:
 
 @pytest.mark.parametrize("code", CATALOGUE)
 def test_every_code_is_explained(code: str) -> None:
-    from nao_kin.cli.explain import _text
+    from nao_kin.cli.explain_command import _text
 
     text = _text(CATALOGUE[code])
     assert text.startswith(f"{code} ({CATALOGUE[code].severity})")

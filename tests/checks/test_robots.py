@@ -9,7 +9,7 @@ from tests.conftest import BUNDLED, needs_examples
 
 import nao_kin as nk
 from nao_kin.checks.finding import Severity
-from nao_kin.known import example_robot_data_share
+from nao_kin.robot.known import example_robot_data_share
 
 # Each looked at by hand; docs/check.md says why it is a defect.
 KNOWN_ERRORS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.conftest import robot
 
-from nao_kin.checks.rules.twins import Symmetry, twins
+from nao_kin.checks.rules.twin_rules import Symmetry, twins
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 import nao_kin as nk
 from nao_kin.documents.claim import DOCUMENTS, Claim, Correction, Measured, Verdict, judged
 from nao_kin.documents.erratum import as_markdown, as_text
-from nao_kin.documents.ledger import Ledger, claims
+from nao_kin.documents.judging import Ledger, claims
 from nao_kin.errors import UnknownNameError
 
 # The statements that the ledger has to judge, by document and place; it may have more.

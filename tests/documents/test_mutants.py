@@ -10,7 +10,7 @@ import pytest
 
 from nao_kin.documents import mutants as module
 from nao_kin.documents.claim import DOCUMENTS, Claim, Measured, Verdict, judged
-from nao_kin.documents.ledger import claims, ledger
+from nao_kin.documents.judging import claims, ledger
 from nao_kin.documents.mutants import EQUIVALENT, Trial, mutants, trials_of, tried
 
 

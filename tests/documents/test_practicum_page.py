@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from nao_kin.cli.bench.interpolation import compare
-from nao_kin.cli.bench.not_converging import not_converging
+from nao_kin.bench.interpolation import compare
+from nao_kin.bench.not_converging import not_converging
 
 ROOT = Path(__file__).parent.parent.parent
 PAGE = (ROOT / "docs" / "practicum.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from nao_kin.documents import hexapod_article as article
 from nao_kin.documents import thesis_inverse as inverse
 from nao_kin.documents.claim import Claim, Verdict, judged
 from nao_kin.documents.hexapod_walker import foot_of, stances, walker
-from nao_kin.documents.ledger import claims
+from nao_kin.documents.judging import claims
 from nao_kin.documents.thesis import left_arm, right_arm
 from nao_kin.documents.thesis_arms import Side, arm_configurations, described_arm, robot_arm
 from nao_kin.documents.thesis_inverse_checks import table_counts

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from nao_kin.chain import Chain, random_configurations
-from nao_kin.ik.catalogue import METHODS
 from nao_kin.ik.compiled import run_of, settings_of, solve_goal, tables_of, trace_rows
-from nao_kin.ik.loop import Budget, Update, run_reference
+from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import Problem, Run
+from nao_kin.ik.reference_loop import Budget, Update, run_reference
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.se3 import rotation_angle
 from nao_kin.tolerances import TOLERANCES

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from nao_kin.chain import Chain, into_limits, random_configurations
-from nao_kin.ik.ccd import squared_error
-from nao_kin.ik.geometric import CCD, FABRIK, FOLLOW_THE_LEADER, sweep, sweep_memory
+from nao_kin.ik.geometric.ccd import squared_error
+from nao_kin.ik.geometric.sweep import CCD, FABRIK, FOLLOW_THE_LEADER, sweep, sweep_memory
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
-from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.joint_limits import packed_rules
+from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
 from nao_kin.kernels.motion import packed_joints, place
-from nao_kin.kernels.path import JointPath, PathJoint, joint_path
 
 METHODS = {"ccd": CCD, "ftl": FOLLOW_THE_LEADER, "fabrik": FABRIK}
 POSITION = KINDS["position"]

@@ -11,8 +11,8 @@ import pytest
 from nao_kin.chain import neutral, random_configurations
 from nao_kin.ik import aim
 from nao_kin.ik.compiled import tables_of
-from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
+from nao_kin.ik.reference_loop import Budget
 from nao_kin.ik.target import Target
 from nao_kin.kernels.motion import jacobian, place
 from nao_kin.tolerances import Tolerances

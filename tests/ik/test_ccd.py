@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from nao_kin.chain import Chain, in_limits, into_limits, random_configurations
-from nao_kin.ik.ccd import move_column, squared_error
+from nao_kin.ik.geometric.ccd import move_column, squared_error
 from nao_kin.ik.target import KINDS
+from nao_kin.kernels.joint_path import PathJoint, joint_path
 from nao_kin.kernels.motion import COLUMN
-from nao_kin.kernels.path import PathJoint, joint_path
-from nao_kin.known import KNOWN_ROBOTS
+from nao_kin.robot.known import KNOWN_ROBOTS
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 from tests.ik.solving import chain_of
 from tests.ik.sweeping import Arm, at, near_pairs

@@ -17,9 +17,9 @@ from nao_kin.chain import in_limits, into_limits, neutral, random_configurations
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim, layout
 from nao_kin.ik.compiled import run_of, solve_goal, solve_goals, tables_of
-from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
-from nao_kin.kernels.limits import move_inside
+from nao_kin.ik.reference_loop import Budget
+from nao_kin.kernels.joint_limits import move_inside
 from nao_kin.kernels.linear import solve_positive, times_own_transpose
 from nao_kin.kernels.motion import jacobian, place
 from tests.conftest import robot

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_kin.ik.fabrik_tree import tree_pass, tree_sweep
-from nao_kin.ik.hinges import hinge_memory, hinge_pass
-from nao_kin.kernels.limits import move_inside, packed_rules
+from nao_kin.ik.geometric.fabrik import hinge_memory, hinge_pass
+from nao_kin.ik.geometric.fabrik_tree import tree_pass, tree_sweep
+from nao_kin.kernels.joint_limits import move_inside, packed_rules
 from nao_kin.kernels.motion import packed_joints
 from tests.conftest import robot
 from tests.ik.sweeping import Arm

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from nao_kin.chain import in_limits, into_limits, random_configurations
-from nao_kin.ik.geometric import refusal
-from nao_kin.ik.groups import chain_length, find_groups, group_point
-from nao_kin.ik.hinges import hinge_memory, hinge_pass
-from nao_kin.ik.points import fabrik_points
+from nao_kin.ik.geometric.fabrik import hinge_memory, hinge_pass
+from nao_kin.ik.geometric.free_points import fabrik_points
+from nao_kin.ik.geometric.hinge_groups import chain_length, find_groups, group_point
+from nao_kin.ik.geometric.sweep import refusal
 from nao_kin.ik.reach import reach_shell
-from nao_kin.kernels.path import JointPath, PathJoint, joint_path
+from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
 from tests.conftest import robot
 from tests.ik.solving import chain_of
 from tests.ik.sweeping import METHODS, Arm, at, goals_of, near_pairs, planar, random_hinges

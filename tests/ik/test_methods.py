@@ -8,8 +8,8 @@ import pytest
 import nao_kin as nk
 from nao_kin.chain import in_limits, neutral, random_configurations
 from nao_kin.errors import InvalidInputError, NaoKinError, UnknownNameError
-from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Problem, Run, Status, judge
+from nao_kin.ik.reference_loop import Budget
 from nao_kin.ik.target import Target
 from nao_kin.se3 import position_distance, rotation_distance
 from tests.conftest import robot

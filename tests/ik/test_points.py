@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik.points import fabrik_points
+from nao_kin.ik.geometric.free_points import fabrik_points
 
 LINE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]]
 

@@ -10,7 +10,7 @@ import pytest
 from nao_kin.chain import random_configurations
 from nao_kin.ik import orientation, rules
 from nao_kin.ik.aim import POSE, raw_error
-from nao_kin.ik.catalogue import METHODS
+from nao_kin.ik.methods import METHODS
 from nao_kin.ik.rules import update
 from nao_kin.ik.scales import Scales, chain_scales
 from nao_kin.kernels.linear import orthogonal_rows

@@ -8,12 +8,12 @@ import numpy as np
 import pinocchio as pin
 
 import nao_kin as nk
-from nao_kin.kernels.path import JointPath, PathJoint, joint_path
+from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
 
 ODD_ROBOT = """<?xml version="1.0"?>
 <robot name="odd">

@@ -20,7 +20,7 @@ from tests.kernels.paths import random_path
 PATH = """
 import numpy as np
 from nao_kin.kernels import audit, forward
-from nao_kin.kernels.path import PathJoint, joint_path
+from nao_kin.kernels.joint_path import PathJoint, joint_path
 T = np.eye(4)
 T[0, 3] = 0.5
 joints = [PathJoint(T, np.array([0.0, 0.0, 1.0]), False, k) for k in range(2)]

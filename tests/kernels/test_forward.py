@@ -16,7 +16,7 @@ from tests.kernels.paths import odd_robot, random_path, slow_pose
 
 if TYPE_CHECKING:
     from nao_kin.chain import Chain
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 EXTRA_PATHS = {
     "nao_v50_h25": [("l_sole", "r_gripper"), ("l_sole", "r_sole"), ("r_sole", "CameraTop_frame"), ("LArm", "RArm")],

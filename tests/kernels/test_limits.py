@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nao_kin.kernels.limits import column_range, decides, packed_rules
+from nao_kin.kernels.joint_limits import column_range, decides, packed_rules
 from tests.conftest import robot
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nao_kin.kernels import forward
-from nao_kin.kernels.path import JointPath, PathJoint, joint_path
+from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
 from nao_kin.kernels.trigonometry import sine_cosine
 
 STRATA = {

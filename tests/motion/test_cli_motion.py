@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from nao_kin.trajectory.files import read_trajectory
+from nao_kin.trajectory.files.reading import read_trajectory
 from tests.conftest import robot
 from tests.test_cli import ok, run
 

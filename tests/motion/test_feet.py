@@ -12,7 +12,7 @@ import pytest
 from nao_kin.chain import into_limits, outside_limits, random_configurations
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.ik.problem import Status
-from nao_kin.motion.feet import FeetResult, both_feet
+from nao_kin.motion.nao.feet import FeetResult, both_feet
 from nao_kin.se3 import from_xyz_rpy
 from tests.conftest import robot
 

@@ -12,10 +12,10 @@ import pinocchio as pin
 import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.footfall import GAITS, LEGS, Course, Gait
-from nao_kin.motion.gait import Walk, fastest, walk
-from nao_kin.motion.walk_command import WalkCommand
-from nao_kin.motion.walk_plan import WalkPlan
+from nao_kin.motion.hexapod.footfall import GAITS, LEGS, Course, Gait
+from nao_kin.motion.hexapod.gait import Walk, fastest, walk
+from nao_kin.motion.hexapod.walk_command import WalkCommand
+from nao_kin.motion.hexapod.walk_plan import WalkPlan
 from tests.conftest import robot
 
 LEAN = (0.01, -0.01, 0.01, 0.05, -0.05, 0.1)

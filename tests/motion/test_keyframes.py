@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from nao_kin.errors import InvalidInputError, KeyframeFileError, UnknownNameError
-from nao_kin.motion.keyframe_file import EXAMPLE, Keyframe, Keyframes, parse_keyframes, read_keyframes
-from nao_kin.motion.keyframes import Played, play
+from nao_kin.motion.nao.keyframe_file import EXAMPLE, Keyframe, Keyframes, parse_keyframes, read_keyframes
+from nao_kin.motion.nao.keyframes import Played, play
 from tests.conftest import robot
 
 if TYPE_CHECKING:
@@ -298,7 +298,7 @@ def test_sliding_joints_need_a_unit_of_length(tmp_path: Path) -> None:
         '<robot name="slide"><link name="a"/><link name="b"/><joint name="j" type="prismatic"><parent link="a"/>'
         '<child link="b"/><axis xyz="1 0 0"/><limit lower="0" upper="0.5" effort="1" velocity="1"/></joint></robot>'
     )
-    from nao_kin.robot import load
+    from nao_kin.robot.robot import load
 
     text = 'angles = "rad"\n[posture.out]\nj = 200\n[[keyframe]]\nposture = "out"\ntime = 1.0\n'
     with pytest.raises(KeyframeFileError, match="lengths"):

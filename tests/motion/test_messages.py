@@ -9,8 +9,8 @@ import pytest
 import umsgpack
 
 from nao_kin.errors import FrameError, NaoKinError, UnknownNameError
-from nao_kin.motion.messages import MAX_FRAME, FrameReader, command, encode, target_of
-from nao_kin.motors import Motors
+from nao_kin.motion.loop.messages import MAX_FRAME, FrameReader, command, encode, target_of
+from nao_kin.robot.motors import Motors
 from tests.conftest import robot
 
 MESSAGES = [

@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.pointing import Pointing, point_at
+from nao_kin.motion.nao.pointing import Pointing, point_at
 from tests.conftest import robot
 
 SHOULDERS = {"left": np.array([0.0, 0.098, 0.1]), "right": np.array([0.0, -0.098, 0.1])}

@@ -11,10 +11,10 @@ import pytest
 import nao_kin as nk
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.plants import RigidBodies, VelocityServos
-from nao_kin.motion.servo import Gains, Servo, run_servo
-from nao_kin.motion.tuning import P_OVERSHOOT, compare_feed_forward, overshoot, tune
-from nao_kin.motors import Motors
+from nao_kin.motion.loop.plants import RigidBodies, VelocityServos
+from nao_kin.motion.loop.servo import Gains, Servo, run_servo
+from nao_kin.motion.loop.tuning import P_OVERSHOOT, compare_feed_forward, overshoot, tune
+from nao_kin.robot.motors import Motors
 from nao_kin.trajectory import Trajectory
 from tests.conftest import robot
 

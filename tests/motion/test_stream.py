@@ -12,12 +12,12 @@ import pytest
 
 from nao_kin.collision import CollisionModel, Plane
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.guard import Guard
-from nao_kin.motion.messages import MAX_FRAME, command, encode
-from nao_kin.motion.plants import VelocityServos
-from nao_kin.motion.servo import Gains
-from nao_kin.motion.stream import SimulatedDrive, StreamLoop
-from nao_kin.motion.transports import InProcess, SocketClient, SocketServer
+from nao_kin.motion.loop.guard import Guard
+from nao_kin.motion.loop.messages import MAX_FRAME, command, encode
+from nao_kin.motion.loop.plants import VelocityServos
+from nao_kin.motion.loop.servo import Gains
+from nao_kin.motion.loop.stream import SimulatedDrive, StreamLoop
+from nao_kin.motion.loop.transports import InProcess, SocketClient, SocketServer
 from tests.conftest import robot
 
 START = (0.3, 3.0, 2.0, 0.5, -0.5, 0.2)

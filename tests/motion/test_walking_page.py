@@ -8,9 +8,9 @@ import sys
 from fractions import Fraction
 from pathlib import Path
 
-from nao_kin.motion.footfall import GAITS, LEGS
-from nao_kin.motion.keyframe_file import parse_keyframes
-from nao_kin.motion.keyframes import play
+from nao_kin.motion.hexapod.footfall import GAITS, LEGS
+from nao_kin.motion.nao.keyframe_file import parse_keyframes
+from nao_kin.motion.nao.keyframes import play
 
 PAGE = (Path(__file__).parents[2] / "docs" / "walking.md").read_text(encoding="utf-8")
 

@@ -12,8 +12,8 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.errors import InvalidInputError, TrajectoryFileError
-from nao_kin.trajectory import files
-from nao_kin.trajectory.files import format_trajectory, parse_trajectory, read_trajectory, write_trajectory
+from nao_kin.trajectory.files import reading as files
+from nao_kin.trajectory.files.reading import format_trajectory, parse_trajectory, read_trajectory, write_trajectory
 from nao_kin.trajectory.trajectory import Trajectory
 from tests.conftest import robot
 

@@ -11,8 +11,8 @@ import pytest
 import nao_kin as nk
 from nao_kin.errors import InvalidInputError
 from nao_kin.se3 import rotation_distance
+from nao_kin.trajectory.instants import sample_times
 from nao_kin.trajectory.paths import line_points
-from nao_kin.trajectory.sampling import sample_times
 
 RATES = {"speed": 0.2, "acceleration": 0.5, "turn_speed": 1.0, "turn_acceleration": 2.0}
 

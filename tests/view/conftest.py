@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from nao_kin.robot import Robot, load
+from nao_kin.robot.robot import Robot, load
 
 if TYPE_CHECKING:
     from pathlib import Path

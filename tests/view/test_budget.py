@@ -9,8 +9,8 @@ import pytest
 from tests.conftest import needs_examples, robot
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.known import example_robot_data_share
-from nao_kin.robot import Robot, load
+from nao_kin.robot.known import example_robot_data_share
+from nao_kin.robot.robot import Robot, load
 from nao_kin.view.budget import DEFAULT_MAX_MB, fitted
 from nao_kin.view.export import export_html, show
 from nao_kin.view.page import page

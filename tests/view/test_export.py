@@ -20,7 +20,7 @@ from nao_kin.view.page import page
 from nao_kin.view.robot_scene import robot_scene
 
 if TYPE_CHECKING:
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
 
 
 def test_the_file_is_the_page(small: Robot, tmp_path: Path) -> None:

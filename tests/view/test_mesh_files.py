@@ -10,7 +10,7 @@ import trimesh
 from lxml import etree
 from tests.conftest import needs_examples
 
-from nao_kin.known import example_robot_data_share
+from nao_kin.robot.known import example_robot_data_share
 from nao_kin.urdf.mesh_errors import LargeMeshError
 from nao_kin.view.mesh_files import UnreadableMeshError, read_parts
 

@@ -16,7 +16,7 @@ from html.parser import HTMLParser
 import numpy as np
 import umsgpack
 
-from nao_kin.robot import Robot, load
+from nao_kin.robot.robot import Robot, load
 from nao_kin.view.page import page
 from nao_kin.view.record import node_paths, recorded
 from nao_kin.view.robot_scene import robot_scene
@@ -63,7 +63,7 @@ def test_same_input_same_bytes(small: Robot) -> None:
 
 def test_same_bytes_in_another_process() -> None:
     program = (
-        "import hashlib; from nao_kin.robot import load; from nao_kin.view.page import page;"
+        "import hashlib; from nao_kin.robot.robot import load; from nao_kin.view.page import page;"
         "from nao_kin.view.robot_scene import robot_scene;"
         "print(hashlib.sha256(page(robot_scene(load('jaco2'))).encode()).hexdigest())"
     )

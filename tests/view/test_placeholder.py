@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from nao_kin.robot import load
+from nao_kin.robot.robot import load
 from nao_kin.urdf.elements import Box, Inertial, MeshFile, Origin, Solid
 from nao_kin.view.placeholder import COLOUR, EDGE, placeholder_box, sign_corners
 from nao_kin.view.record import recorded

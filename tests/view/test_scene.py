@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nao_kin.errors import UnknownNameError
-from nao_kin.robot import Robot, load
+from nao_kin.robot.robot import Robot, load
 from nao_kin.view.page import page
 from nao_kin.view.robot_scene import SHAPELESS, robot_scene
 from nao_kin.view.scene import Node, Scene, bounds, local_pose, world_poses

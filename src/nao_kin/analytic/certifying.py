@@ -16,14 +16,14 @@ from nao_kin.ik.measure import errors
 from nao_kin.ik.problem import Status
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.forward import poses
-from nao_kin.kernels.limits import inside_ranges, packed_rules
+from nao_kin.kernels.joint_limits import inside_ranges, packed_rules
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
     from nao_kin.tolerances import Tolerances
 
 __all__ = [
@@ -60,7 +60,7 @@ class Ranges(NamedTuple):
 
     Attributes:
         limits: Least and greatest values (2, n) [rad or m].
-        coupled: Coupled limits (k, 7), see `nao_kin.kernels.limits`.
+        coupled: Coupled limits (k, 7), see `nao_kin.kernels.joint_limits`.
         winding: 1 where whole turns bring a joint back that is outside its limits (n,).
     """
 
@@ -95,7 +95,7 @@ class Written(NamedTuple):
 
 
 class Certificate(NamedTuple):
-    """What is kept of it; see `nao_kin.analytic.batch.BatchSolutions`.
+    """What is kept of it; see `nao_kin.analytic.solution_batch.BatchSolutions`.
 
     Attributes:
         q: Joints (N, B, n), NaN where there is no solution.

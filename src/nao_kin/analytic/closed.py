@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
-from nao_kin.analytic.batch import certified
 from nao_kin.analytic.certifying import ABSENT, SOLVED
 from nao_kin.analytic.matching import Matched, matched
+from nao_kin.analytic.solution_batch import certified
 from nao_kin.analytic.solutions import error_of, judged, slack_of, sorted_out
 from nao_kin.arrays import positive
 from nao_kin.chain import configuration, into_limits, neutral
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import layout
 from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_rows, judge_rows, starts_of
-from nao_kin.ik.catalogue import METHODS
+from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.target import Target, TargetLike

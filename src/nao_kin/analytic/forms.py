@@ -5,22 +5,15 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from nao_kin.analytic import (
-    five_r,
-    hexapod,
-    hexapod_kernel,
-    leg_kernel,
-    nao_arm,
-    nao_arm_kernel,
-    nao_head,
-    nao_head_kernel,
-    nao_leg,
-    six_r,
-    six_r_bent,
-    six_r_elbow,
-    six_r_general,
-)
 from nao_kin.analytic.form import ClosedForm, Request
+from nao_kin.analytic.hexapod import hexapod_leg as hexapod
+from nao_kin.analytic.hexapod import hexapod_leg_kernel as hexapod_kernel
+from nao_kin.analytic.nao import leg_kernel, nao_arm, nao_arm_kernel, nao_head, nao_head_kernel, nao_leg
+from nao_kin.analytic.six_r import elbow as six_r_elbow
+from nao_kin.analytic.six_r import five_r
+from nao_kin.analytic.six_r import general as six_r_general
+from nao_kin.analytic.six_r import recognising as six_r
+from nao_kin.analytic.six_r import six_r_bent_wrist as six_r_bent
 
 __all__ = ["FORMS"]
 
@@ -67,7 +60,7 @@ FORMS: Final = (
     ClosedForm(
         name="nao_leg",
         title="NAO leg of six joints, from torso to foot or from foot to torso",
-        source="Kofinas, Orfanoudakis and Lagoudakis 2013, the leg; derived in nao_kin.analytic.nao_leg",
+        source="Kofinas, Orfanoudakis and Lagoudakis 2013, the leg; derived in nao_kin.analytic.nao.nao_leg",
         joints=6,
         requests={"pose": Request(leg_kernel.BRANCHES)},
         labels=nao_leg.LABELS,
@@ -103,7 +96,7 @@ FORMS: Final = (
     ClosedForm(
         name="six_r_bent_wrist",
         title="arm with axes 2 and 3 parallel, 4 and 5 meeting, 5 and 6 meeting, as JACO2, or its mirror",
-        source="derived in nao_kin.analytic.six_r_bent",
+        source="derived in nao_kin.analytic.six_r.six_r_bent_wrist",
         joints=6,
         requests={"pose": Request(six_r_bent.BRANCHES)},
         labels=six_r.LABELS,
@@ -139,7 +132,7 @@ FORMS: Final = (
     ClosedForm(
         name="five_r",
         title="any arm of five turning joints, as six with an imagined one; slow",
-        source="Raghavan and Roth 1990; the imagined joint in nao_kin.analytic.five_r",
+        source="Raghavan and Roth 1990; the imagined joint in nao_kin.analytic.six_r.five_r",
         joints=5,
         requests={"pose": Request(five_r.BRANCHES)},
         labels=six_r_general.LABELS,

@@ -13,7 +13,7 @@ from nao_kin.analytic.certifying import Ranges
 from nao_kin.analytic.form import ClosedForm, Geometry, GoalKind, Mismatch, Request
 from nao_kin.analytic.forms import FORMS
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.kernels.path import held
+from nao_kin.kernels.joint_path import held
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

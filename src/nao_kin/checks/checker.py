@@ -10,10 +10,16 @@ from typing import TYPE_CHECKING, Final
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
 from nao_kin.checks.finding import Finding, Report
-from nao_kin.checks.rules import figures, inertia, joints, meshes, names, tree, vocabulary
+from nao_kin.checks.rules import figure_rules as figures
+from nao_kin.checks.rules import inertia_rules as inertia
+from nao_kin.checks.rules import joint_rules as joints
+from nao_kin.checks.rules import mesh_rules as meshes
+from nao_kin.checks.rules import name_rules as names
+from nao_kin.checks.rules import tree_rules as tree
+from nao_kin.checks.rules import vocabulary_rules as vocabulary
 from nao_kin.checks.subject import Subject
 from nao_kin.errors import UnknownNameError, UrdfError
-from nao_kin.known import KNOWN_ROBOTS, find_known, robot_file
+from nao_kin.robot.known import KNOWN_ROBOTS, find_known, robot_file
 from nao_kin.urdf.document import UNREADABLE, read_bytes
 from nao_kin.urdf.outline import Defect, Outline, describe
 from nao_kin.urdf.positions import Positions
@@ -198,7 +204,9 @@ def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
 
 def _model_rules(thorough: bool) -> tuple[Rule, ...]:
     """The rules that compute with the model, for files without structural defects."""
-    from nao_kin.checks.rules import collision, mirror, poses  # Pinocchio: only when there is a model to compute with
+    from nao_kin.checks.rules import collision_rules as collision
+    from nao_kin.checks.rules import mirror_rules as mirror
+    from nao_kin.checks.rules import pose_rules as poses
 
     rules: tuple[Rule, ...] = (
         poses.coupled_ranges,

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
-    from nao_kin.known import KnownRobot
-    from nao_kin.robot import Robot
+    from nao_kin.robot.known import KnownRobot
+    from nao_kin.robot.robot import Robot
     from nao_kin.urdf.document import UrdfDocument
     from nao_kin.urdf.outline import Defect, Outline
     from nao_kin.urdf.positions import Positions
@@ -61,7 +61,7 @@ class Subject:
     @cached_property
     def robot(self) -> Robot:
         """The model; only for a file without structural defects."""
-        from nao_kin.robot import Robot  # Pinocchio: only when there is a model to compute with
+        from nao_kin.robot.robot import Robot  # Pinocchio: only when there is a model to compute with
 
         return Robot.from_document(self.document, self.known)
 

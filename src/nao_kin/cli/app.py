@@ -40,7 +40,10 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "warmup": {"short_help": "Compile ahead what later calls need."},
     "bench": {"short_help": "Speed and success as ratios within one run."},
 }
-"""The commands, in the order of the help; each is the function of that name in the module of that name."""
+"""The commands, in the order of the help; each is the function of that name in `cli/NAME_command.py`."""
+
+_MODULES: Final = {"bench": "nao_kin.bench", "trajectory": "nao_kin.cli.trajectory"}
+"""Commands with commands of their own, which are packages."""
 
 
 def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
@@ -56,7 +59,7 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     )
     app.callback()(_root)
     for name in names:
-        command = getattr(importlib.import_module(f"nao_kin.cli.{name}"), name)
+        command = getattr(importlib.import_module(_MODULES.get(name, f"nao_kin.cli.{name}_command")), name)
         if isinstance(command, typer.Typer):
             app.add_typer(command, name=name, **COMMANDS[name])
         else:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nao_kin.checks.departure import departure_finding
+from nao_kin.checks.departure_finding import departure_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from nao_kin.checks.finding import Finding
     from nao_kin.crosscheck import Comparison
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
 
 __all__ = ["departures_from_model", "departures_from_table"]
 
@@ -27,8 +27,8 @@ def departures_from_table(path: str, table: str) -> Iterator[Finding]:
         UrdfError: The file cannot be read.
     """
     from nao_kin.crosscheck import compare
-    from nao_kin.dh import DHChain
-    from nao_kin.robot import load
+    from nao_kin.dh.dh_chain import DHChain
+    from nao_kin.robot.robot import load
 
     chain = DHChain.from_file(table)
     robot = load(path)
@@ -45,7 +45,7 @@ def departures_from_model(path: str, other: str) -> Iterator[Finding]:
     Raises:
         UrdfError: One of the files cannot be read.
     """
-    from nao_kin.robot import load
+    from nao_kin.robot.robot import load
 
     ours, theirs = load(path), load(other)
     frames = set(theirs.frame_names)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.collision.shapes import Body
-    from nao_kin.motors import Motors
+    from nao_kin.robot.motors import Motors
 
 __all__ = ["pair_levers"]
 

@@ -15,13 +15,13 @@ from nao_kin.chain import random_configurations
 from nao_kin.collision.levers import pair_levers
 from nao_kin.collision.shapes import Body, Plane, link_bodies, plane_body
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motors import Motors
+from nao_kin.robot.motors import Motors
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
 
 __all__ = ["DISTANCE_ACCURACY", "CollisionModel", "Excluded", "Proximity"]
 

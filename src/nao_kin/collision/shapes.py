@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from nao_kin.arrays import Floats
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
     from nao_kin.urdf.elements import Shape
 
 __all__ = ["Body", "Plane", "coal_shape", "link_bodies", "plane_body"]

@@ -13,8 +13,8 @@ from nao_kin.crosscheck.departure import Departure, first_departure
 from nao_kin.crosscheck.explanation import Alternative, Explanation, Step, explain
 from nao_kin.crosscheck.gauge import Gauge, find_gauge
 from nao_kin.crosscheck.invariants import AxisPair, first_pair
-from nao_kin.dh import DHChain
-from nao_kin.dh_from_chain import to_dh
+from nao_kin.dh.dh_chain import DHChain
+from nao_kin.dh.from_chain import to_dh
 from nao_kin.errors import InvalidInputError
 from nao_kin.se3 import position_distance, rotation_distance
 from nao_kin.table import Column, Table

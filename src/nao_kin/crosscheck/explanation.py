@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.dh import DHChain
+    from nao_kin.dh.dh_chain import DHChain
     from nao_kin.tolerances import Tolerances
 
 __all__ = ["Alternative", "Explanation", "Step", "explain"]

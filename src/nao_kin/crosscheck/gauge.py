@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.crosscheck.wording import angle_text, length_text, transform_text
-from nao_kin.joint_lines import JointLines, Normals, joint_lines, normals
+from nao_kin.dh.joint_lines import JointLines, Normals, joint_lines, normals
 from nao_kin.se3 import position_distance, rotation_distance
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.dh import DHChain
+    from nao_kin.dh.dh_chain import DHChain
 
 __all__ = ["Gauge", "find_gauge", "lines_fit", "settled"]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.crosscheck.gauge import lines_fit, settled
 from nao_kin.crosscheck.wording import angle_text, length_text
-from nao_kin.joint_lines import JointLines, Normals, joint_lines, normals
+from nao_kin.dh.joint_lines import JointLines, Normals, joint_lines, normals
 
 if TYPE_CHECKING:
     from nao_kin.chain import Chain

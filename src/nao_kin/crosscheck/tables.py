@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.dh import DHChain
-    from nao_kin.dh_row import Convention
+    from nao_kin.dh.dh_chain import DHChain
+    from nao_kin.dh.dh_row import Convention
 
 __all__ = ["ALPHA", "THETA", "A", "D", "Goal", "Motion", "Tables", "errors_of", "goal_of", "motion"]
 

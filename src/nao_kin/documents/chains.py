@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from nao_kin.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from nao_kin.dh import DHChain
+    from nao_kin.dh.dh_chain import DHChain
 
 __all__ = ["DOCUMENT_CHAINS", "DocumentChain", "document_chain", "document_chain_names", "documents_of"]
 

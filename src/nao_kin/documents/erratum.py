@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from nao_kin.documents.claim import Judgement, Measured
-    from nao_kin.documents.ledger import Ledger
+    from nao_kin.documents.judging import Ledger
 
 __all__ = ["as_markdown", "as_text", "entries", "quantity", "residual"]
 

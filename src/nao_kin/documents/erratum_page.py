@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from nao_kin.documents.claim import Judgement
-    from nao_kin.documents.ledger import Ledger
+    from nao_kin.documents.judging import Ledger
 
 __all__ = ["as_html"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from nao_kin.documents import hexapod_article as forms
 from nao_kin.documents.claim import Measured
 from nao_kin.documents.hexapod_walker import body_poses, foot_of, phantomx, placed, stances, walker
-from nao_kin.documents.sampling import deviation, wrapped
+from nao_kin.documents.samples import deviation, wrapped
 from nao_kin.se3 import rotation_x, rotation_y, rotation_z
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.robot import Robot, load
+from nao_kin.robot.robot import Robot, load
 from nao_kin.se3 import rotation_x, rotation_y, rotation_z
 
 if TYPE_CHECKING:

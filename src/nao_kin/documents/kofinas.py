@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from nao_kin.dh import DHChain, DHRow
+from nao_kin.dh.dh_chain import DHChain, DHRow
 from nao_kin.se3 import rotation_x, rotation_y, rotation_z, translation
 
 __all__ = ["V33_LENGTHS", "Lengths", "arm", "head", "leg"]

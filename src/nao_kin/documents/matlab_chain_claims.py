@@ -10,8 +10,8 @@ from nao_kin.chain import random_configurations
 from nao_kin.documents import matlab_matrices as printed
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.kofinas import V33_LENGTHS
-from nao_kin.documents.sampling import deviation
-from nao_kin.robot import load
+from nao_kin.documents.samples import deviation
+from nao_kin.robot.robot import load
 
 if TYPE_CHECKING:
     from nao_kin.documents.claim import Form

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from nao_kin.dh import DHChain, DHRow
+from nao_kin.dh.dh_chain import DHChain, DHRow
 from nao_kin.se3 import rotation_x, rotation_y, rotation_z, translation
 
 __all__ = ["head", "left_hand"]

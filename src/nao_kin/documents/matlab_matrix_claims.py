@@ -11,8 +11,8 @@ import pinocchio as pin
 from nao_kin.chain import random_configurations
 from nao_kin.documents import matlab_matrices as printed
 from nao_kin.documents.claim import Claim, Measured
-from nao_kin.documents.sampling import deviation
-from nao_kin.robot import load
+from nao_kin.documents.samples import deviation
+from nao_kin.robot.robot import load
 from nao_kin.se3 import translation
 
 if TYPE_CHECKING:

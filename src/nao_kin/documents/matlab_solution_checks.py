@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.documents.claim import Measured
-from nao_kin.documents.sampling import deviation, wrapped
+from nao_kin.documents.samples import deviation, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Callable

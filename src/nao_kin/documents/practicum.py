@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.dh import DHChain, DHRow
+from nao_kin.dh.dh_chain import DHChain, DHRow
 
 __all__ = ["CHECK_Q_DEG", "CHECK_T_BASE_HAND", "jaco2"]
 

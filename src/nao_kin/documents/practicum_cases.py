@@ -10,12 +10,12 @@ import pinocchio as pin
 
 from nao_kin.arrays import Floats
 from nao_kin.chain import random_configurations
-from nao_kin.documents.sampling import regular_configurations
-from nao_kin.robot import load
+from nao_kin.documents.samples import regular_configurations
+from nao_kin.robot.robot import load
 from nao_kin.se3 import rpy
 
 if TYPE_CHECKING:
-    from nao_kin.urdf_chain import UrdfChain
+    from nao_kin.robot.urdf_chain import UrdfChain
 
 __all__ = ["Near", "arm", "euler_jacobian", "euler_pose", "near_poses", "pose_error", "singular_configurations"]
 

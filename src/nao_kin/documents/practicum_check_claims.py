@@ -11,7 +11,7 @@ from nao_kin.documents import practicum_newton as printed
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.practicum import CHECK_Q_DEG, jaco2
 from nao_kin.documents.practicum_cases import arm
-from nao_kin.documents.sampling import derivative, deviation, relative
+from nao_kin.documents.samples import derivative, deviation, relative
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats

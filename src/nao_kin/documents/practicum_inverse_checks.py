@@ -10,7 +10,7 @@ from nao_kin.chain import random_configurations
 from nao_kin.documents import practicum_newton as printed
 from nao_kin.documents.claim import Measured
 from nao_kin.documents.practicum_cases import arm, near_poses, pose_error, singular_configurations
-from nao_kin.documents.sampling import derivative, deviation, regular_configurations, wrapped
+from nao_kin.documents.samples import derivative, deviation, regular_configurations, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from nao_kin.documents.sampling import derivative
+from nao_kin.documents.samples import derivative
 
 if TYPE_CHECKING:
     from collections.abc import Callable

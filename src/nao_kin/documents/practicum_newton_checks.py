@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from nao_kin.documents.claim import Measured
 from nao_kin.documents.practicum_cases import arm, euler_jacobian, euler_pose, near_poses
-from nao_kin.documents.sampling import derivative, deviation, relative
+from nao_kin.documents.samples import derivative, deviation, relative
 from nao_kin.se3 import from_xyz_rpy
 
 if TYPE_CHECKING:

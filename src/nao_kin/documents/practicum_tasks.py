@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.dh_row import DHRow, dh_matrix
+from nao_kin.dh.dh_row import DHRow, dh_matrix
 from nao_kin.documents.practicum import jaco2
 from nao_kin.errors import InvalidInputError
-from nao_kin.robot import load
-from nao_kin.trajectory.files import read_trajectory, write_trajectory
+from nao_kin.robot.robot import load
+from nao_kin.trajectory.files.reading import read_trajectory, write_trajectory
 from nao_kin.trajectory.following import FollowResult, follow
 from nao_kin.trajectory.paths import PositionLine, line_points
 from nao_kin.trajectory.replaying import Replay, replay

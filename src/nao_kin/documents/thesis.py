@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from nao_kin.dh import DHChain, DHRow
+from nao_kin.dh.dh_chain import DHChain, DHRow
 from nao_kin.se3 import rotation_z, translation
 
 __all__ = ["left_arm", "right_arm"]

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.robot import Robot, load
+from nao_kin.robot.robot import Robot, load
 from nao_kin.se3 import translation
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nao_kin.arrays import Floats
-    from nao_kin.urdf_chain import UrdfChain
+    from nao_kin.robot.urdf_chain import UrdfChain
 
 __all__ = ["DescribedArm", "Side", "arm_configurations", "described_arm", "nao", "robot_arm", "shoulder_to_forearm"]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.dh_row import DHRow, dh_matrix
+from nao_kin.dh.dh_row import DHRow, dh_matrix
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.thesis_arms import arm_configurations, described_arm, nao, robot_arm, shoulder_to_forearm
 from nao_kin.documents.thesis_denavit import eq_2_2_2_6

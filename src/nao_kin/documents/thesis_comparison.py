@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.documents.claim import Measured
-from nao_kin.documents.sampling import derivative, relative
+from nao_kin.documents.samples import derivative, relative
 from nao_kin.documents.thesis_arms import arm_configurations, described_arm, nao, robot_arm
 from nao_kin.documents.thesis_inverse import left_pipeline_corrected
 from nao_kin.documents.thesis_inverse_checks import best_candidate
 from nao_kin.documents.thesis_methods import JACOBIAN, TARGETS, far, near
-from nao_kin.ik.catalogue import METHODS
-from nao_kin.ik.loop import Budget
-from nao_kin.ik.methods import solve
+from nao_kin.ik.methods import METHODS
+from nao_kin.ik.reference_loop import Budget
+from nao_kin.ik.single import solve
 from nao_kin.ik.target import Target
-from nao_kin.robot import load
+from nao_kin.robot.robot import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable

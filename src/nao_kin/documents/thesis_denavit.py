@@ -11,7 +11,7 @@ import pinocchio as pin
 from numpy import dot
 
 from nao_kin.documents.claim import Claim, Measured
-from nao_kin.documents.sampling import deviation
+from nao_kin.documents.samples import deviation
 from nao_kin.se3 import rotation_x, rotation_z, translation
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from numpy.linalg import norm
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.thesis_arms import arm_configurations, described_arm, robot_arm
 from nao_kin.documents.thesis_fabrik import backward, forward, unreachable
-from nao_kin.ik.points import fabrik_points
+from nao_kin.ik.geometric.free_points import fabrik_points
 from nao_kin.se3 import rotation_y, rotation_z
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ CLAIMS: Final = (
         unit="mm",
         correction=Correction(
             _patient,
-            "line 40 of the second block sets p_{i+1} (nao_kin.ik.points.fabrik_points)",
+            "line 40 of the second block sets p_{i+1} (nao_kin.ik.geometric.free_points.fabrik_points)",
             why="The loop ends after one round because the tip is never moved off the target; the links give.",
         ),
     ),
@@ -148,7 +148,7 @@ CLAIMS: Final = (
         tolerance=0.0,
         correction=Correction(
             _without_division,
-            "where r_i = 0, keep the link's direction (nao_kin.ik.points.fabrik_points)",
+            "where r_i = 0, keep the link's direction (nao_kin.ik.geometric.free_points.fabrik_points)",
             why="A point on the one it follows leaves no line to put it on, and λ_i divides by 0.",
         ),
     ),

@@ -10,8 +10,8 @@ from numpy.linalg import norm
 
 from nao_kin.documents import thesis_fabrik as forms
 from nao_kin.documents.claim import Claim, Correction, Measured
-from nao_kin.documents.sampling import deviation
-from nao_kin.ik.points import fabrik_points
+from nao_kin.documents.samples import deviation
+from nao_kin.ik.geometric.free_points import fabrik_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -264,7 +264,7 @@ CLAIMS: Final = (
         correction=Correction(
             fabrik_points,
             "reject also |p_1 − t| < 2 max d_i − Σ d_i, bend a chain that is in one line "
-            "with the target, and bound the iterations (nao_kin.ik.points.fabrik_points)",
+            "with the target, and bound the iterations (nao_kin.ik.geometric.free_points.fabrik_points)",
             why="A long link leaves a hole about the base that line 7 does not see; on a line nothing ever leaves it.",
             check=_made_right,
         ),

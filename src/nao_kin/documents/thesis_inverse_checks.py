@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from nao_kin.documents.claim import Measured
-from nao_kin.documents.sampling import deviation, wrapped
+from nao_kin.documents.samples import deviation, wrapped
 from nao_kin.documents.thesis_arms import arm_configurations, described_arm, robot_arm
 from nao_kin.documents.thesis_inverse import eq_3_3_0_2_corrected
 from nao_kin.se3 import rotation_angle, rotation_z, translation

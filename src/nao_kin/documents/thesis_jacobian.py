@@ -8,7 +8,7 @@ import numpy as np
 from numpy import dot
 from numpy.linalg import inv
 
-from nao_kin.documents.sampling import derivative
+from nao_kin.documents.samples import derivative
 
 if TYPE_CHECKING:
     from collections.abc import Callable

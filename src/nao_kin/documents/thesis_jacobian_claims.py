@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.documents import thesis_jacobian as forms
 from nao_kin.documents.claim import Claim, Correction, Measured
-from nao_kin.documents.sampling import derivative, deviation, regular_configurations, relative
+from nao_kin.documents.samples import derivative, deviation, regular_configurations, relative
 from nao_kin.documents.thesis_arms import nao, robot_arm
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.documents.claim import Check, Form
-    from nao_kin.urdf_chain import UrdfChain
+    from nao_kin.robot.urdf_chain import UrdfChain
 
 __all__ = ["CLAIMS"]
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.documents.thesis_arms import arm_configurations, robot_arm
-from nao_kin.ik.loop import Budget
-from nao_kin.ik.methods import solve
+from nao_kin.ik.reference_loop import Budget
+from nao_kin.ik.single import solve
 
 if TYPE_CHECKING:
     from nao_kin.ik.problem import IKResult

@@ -8,7 +8,7 @@ import numpy as np
 
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.thesis_arms import nao
-from nao_kin.robot import load
+from nao_kin.robot.robot import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.documents.claim import Claim, Measured
-from nao_kin.documents.sampling import deviation
+from nao_kin.documents.samples import deviation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,8 +14,8 @@ from nao_kin.errors import AuditError, InvalidInputError
 from nao_kin.ik import layout
 from nao_kin.ik.compiled import ENDED, solve_goals
 from nao_kin.ik.measure import measure_many
-from nao_kin.ik.methods import prepared, start_of
 from nao_kin.ik.problem import Problem, Run, Status, judge
+from nao_kin.ik.single import prepared, start_of
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.ik.loop import Budget
+    from nao_kin.ik.reference_loop import Budget
 
 __all__ = [
     "AUDITED",

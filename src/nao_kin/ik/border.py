@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from nao_kin.ik.methods import solve
 from nao_kin.ik.problem import Status
 from nao_kin.ik.reach import reach_shell
+from nao_kin.ik.single import solve
 from nao_kin.ik.target import Target, TargetLike
 
 if TYPE_CHECKING:

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, descent, layout
+from nao_kin.ik import aim, layout
+from nao_kin.ik import compiled_loop as descent
 from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
-from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.joint_limits import packed_rules
 from nao_kin.kernels.motion import packed_joints
 from nao_kin.se3 import ROTATION_TOLERANCE
 
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.ik.loop import Budget
+    from nao_kin.ik.reference_loop import Budget
     from nao_kin.tolerances import Tolerances
 
 __all__ = ["ENDED", "KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
-# By the codes of `nao_kin.ik.descent`, which count from 0.
+# By the codes of `nao_kin.ik.compiled_loop`, which count from 0.
 ENDED: Final = (
     Status.SOLVED,
     Status.STALLED,
@@ -48,7 +49,7 @@ ENDED: Final = (
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Tables:
-    """A chain as the compiled loop reads it; see `nao_kin.ik.descent.solve_one` for the arrays.
+    """A chain as the compiled loop reads it; see `nao_kin.ik.compiled_loop.solve_one` for the arrays.
 
     Attributes:
         joints: Placements and joints (m + 1, 16).
@@ -151,7 +152,7 @@ def trace_rows(outcome: Floats, n: int) -> Floats:
 
 
 def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
-    """Solves for one target; returns the outcome, see `nao_kin.ik.descent`. Nothing passed in is changed but `trace`.
+    """Solves for one target; returns the outcome, see `compiled_loop`. Nothing passed in is changed but `trace`.
 
     Args:
         tables: The chain.

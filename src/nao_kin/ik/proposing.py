@@ -19,7 +19,7 @@ from nao_kin.ik.layout import (
 from nao_kin.ik.orientation import recast_rows
 from nao_kin.ik.rules import update
 from nao_kin.kernels.compiling import leaf_jit
-from nao_kin.kernels.limits import hold, move_inside
+from nao_kin.kernels.joint_limits import hold, move_inside
 from nao_kin.kernels.motion import jacobian, place
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 The reference loop and the compiled loop call the same functions. J is (m, n), the error e is (m,) with J · Δq ≈ e
 [m, rad], and the step Δq (n,) [rad or m] is written to `step`. p holds the method's parameters in the order of its row
-in `nao_kin.ik.methods.METHODS`; p[0] is always the gain K that scales the whole step. A (m, m) and y (m,) are scratch,
+in `nao_kin.ik.single.METHODS`; p[0] is always the gain K that scales the whole step. A (m, m) and y (m,) are scratch,
 and so is J: what is in it afterwards is of no use. A held joint has a zero column in J, and every rule leaves it where
 it is.
 

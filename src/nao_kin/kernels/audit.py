@@ -16,7 +16,7 @@ from nao_kin.kernels.compiling import jit, parallel_jit, prange
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 __all__ = ["tips"]
 

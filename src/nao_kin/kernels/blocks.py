@@ -24,7 +24,7 @@ from nao_kin.kernels.trigonometry import FAR, near_sine_cosine, sine_cosine
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 __all__ = [
     "K_STEP",

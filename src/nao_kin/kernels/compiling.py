@@ -131,7 +131,7 @@ def source_digest(files: Iterable[Path]) -> str:
 
 def _sources() -> list[Path]:
     package = Path(__file__).resolve().parent.parent
-    return [file for folder in _SOURCE_FOLDERS for file in (package / folder).glob("*.py")]
+    return [file for folder in _SOURCE_FOLDERS for file in (package / folder).rglob("*.py")]
 
 
 def _cache_parent() -> Path:

@@ -17,7 +17,7 @@ from nao_kin.kernels.trigonometry import sine_cosine
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 __all__ = ["COLUMN", "MULTIPLIER", "OFFSET", "SLIDES", "jacobian", "packed_joints", "place"]
 

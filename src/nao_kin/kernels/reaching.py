@@ -23,14 +23,14 @@ from nao_kin.kernels.blocks import (
     turn_into_column,
 )
 from nao_kin.kernels.compiling import jit, parallel_jit, prange
-from nao_kin.kernels.limits import column_range, move_inside
+from nao_kin.kernels.joint_limits import column_range, move_inside
 from nao_kin.kernels.linear import dot, orthogonal_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
-    from nao_kin.kernels.path import JointPath
+    from nao_kin.kernels.joint_path import JointPath
 
 __all__ = ["LEAST", "NOTHING", "VOLUME", "Cells", "Samples", "configurations", "sort_into_cells"]
 
@@ -52,7 +52,7 @@ class Samples(NamedTuple):
         steps: What it adds from one configuration to the next (n,), modulo 2⁶⁴.
         mixed: 1 if the bits are mixed, which makes the sequence random; 0 if it is taken as it is.
         limits: Least and greatest values (2, n) [rad or m], all finite.
-        coupled: Coupled limits (k, 7); see `nao_kin.kernels.limits`.
+        coupled: Coupled limits (k, 7); see `nao_kin.kernels.joint_limits`.
         cut: The columns whose range hangs on other columns (c,), each after those that decide it.
     """
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.pinocchio_layout import PinocchioLayout
+from nao_kin.robot.pinocchio_layout import PinocchioLayout
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
     from nao_kin.trajectory import Trajectory
 
 __all__ = ["centres_of_mass", "support_margins"]

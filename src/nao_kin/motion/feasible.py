@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from nao_kin.chain import ChainJoint
+from nao_kin.robot.path import joint_speed, motor_ranges
 from nao_kin.tolerances import TOLERANCES, Tolerances
-from nao_kin.urdf_path import joint_speed, motor_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import LimitRule
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
     from nao_kin.trajectory import Trajectory
 
 __all__ = ["Attempted", "Reason", "Refusal", "motor_joints", "refusal_where", "refusals", "said"]

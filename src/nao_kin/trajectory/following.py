@@ -9,8 +9,8 @@ import numpy as np
 
 from nao_kin.arrays import Floats, frozen, positive, vector
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik.loop import Budget
 from nao_kin.ik.problem import Status
+from nao_kin.ik.reference_loop import Budget
 from nao_kin.ik.target import Target, TargetLike
 from nao_kin.solving import CLOSED, solve
 from nao_kin.table import Column, Table

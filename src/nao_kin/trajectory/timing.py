@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.arrays import Floats, frozen, positive
 from nao_kin.errors import InvalidInputError
-from nao_kin.trajectory.sampling import SAMPLING, sample_times
+from nao_kin.trajectory.instants import SAMPLING, sample_times
 from nao_kin.trajectory.trapezoid import Trapezoid
 
 if TYPE_CHECKING:

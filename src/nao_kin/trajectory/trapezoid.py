@@ -10,8 +10,8 @@ import numpy as np
 
 from nao_kin.arrays import finite, positive
 from nao_kin.errors import InvalidInputError
+from nao_kin.trajectory.instants import SAMPLING, sample_times
 from nao_kin.trajectory.ramps import Course, Move, lasting, shortest
-from nao_kin.trajectory.sampling import SAMPLING, sample_times
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -186,7 +186,7 @@ class Trapezoid:
         return _as_given(np.select(phases, [0.0, sign * a_first, 0.0, sign * a_last], np.zeros_like(t)))
 
     def sample_times(self, sampling: float = SAMPLING) -> Floats:
-        """Times of its samples (k,) [s] at a sampling interval [s]; see `nao_kin.trajectory.sampling.sample_times`."""
+        """Times of its samples (k,) [s] at a sampling interval [s]; see `nao_kin.trajectory.instants.sample_times`."""
         return sample_times(self.duration, sampling, self.start_time)
 
     @property

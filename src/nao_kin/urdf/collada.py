@@ -6,8 +6,8 @@ from typing import Any, Final
 
 from lxml import etree
 
-from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
+from nao_kin.urdf.size_limits import LIMITS
 
 __all__ = ["PICTURED", "harmless_collada"]
 

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import UnknownNameError, UrdfError
-from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.outline import Outline
 from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.reader import read_joints, read_links
 from nao_kin.urdf.safe_xml import read_tree
+from nao_kin.urdf.size_limits import LIMITS
 from nao_kin.urdf.structure import first_defect
 from nao_kin.urdf.writer import kinematic_xml
 

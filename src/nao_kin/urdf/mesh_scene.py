@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_kin.urdf.collada import harmless_collada
-from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
+from nao_kin.urdf.size_limits import LIMITS
 
 if TYPE_CHECKING:
     from pathlib import Path

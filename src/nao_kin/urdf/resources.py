@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import unquote
 
 from nao_kin.errors import UrdfError
-from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.outline import shown
+from nao_kin.urdf.size_limits import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

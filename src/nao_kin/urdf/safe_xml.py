@@ -11,7 +11,7 @@ import re
 from lxml import etree
 
 from nao_kin.errors import UrdfError
-from nao_kin.urdf.limits import LIMITS
+from nao_kin.urdf.size_limits import LIMITS
 
 __all__ = ["read_tree"]
 

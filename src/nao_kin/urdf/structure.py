@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from nao_kin.errors import near_matches
 from nao_kin.urdf import connection, values
-from nao_kin.urdf.limits import LIMITS
 from nao_kin.urdf.outline import Defect, Outline, children, describe, line_of, shown, tag_of
+from nao_kin.urdf.size_limits import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

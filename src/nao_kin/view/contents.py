@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_kin.chain import Chain, OutsideLimit
 from nao_kin.errors import InvalidInputError
-from nao_kin.robot import Robot
+from nao_kin.robot.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Curve, Goal, Motion, NamedPosture, Panel, Scene, SceneChain
 from nao_kin.view.workspace_scene import with_workspace
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from nao_kin.crosscheck import Comparison
     from nao_kin.ik.problem import IKResult
     from nao_kin.ik.target import Target
-    from nao_kin.ik.tree_problem import TreeResult
-    from nao_kin.motion.gait import Walk
+    from nao_kin.ik.tips.tree_problem import TreeResult
+    from nao_kin.motion.hexapod.gait import Walk
+    from nao_kin.robot.tree import Tree
     from nao_kin.trajectory import Trajectory
-    from nao_kin.tree import Tree
     from nao_kin.workspace.reach_map import ReachMap
 
 __all__ = ["Content", "Subject", "scene_of"]
@@ -70,7 +70,7 @@ def scene_of(subject: Subject, content: Content | None = None, *, explain: bool 
 
 
 def _robot_with(robot: Robot, content: Any) -> Scene:
-    from nao_kin.motion.gait import Walk
+    from nao_kin.motion.hexapod.gait import Walk
     from nao_kin.trajectory import Trajectory
     from nao_kin.workspace.reach_map import ReachMap
 
@@ -95,7 +95,7 @@ def _scene(subject: Any, explain: bool) -> Scene:
     from nao_kin.analytic.solutions import Solutions
     from nao_kin.crosscheck import Comparison
     from nao_kin.ik.problem import IKResult
-    from nao_kin.ik.tree_problem import TreeResult
+    from nao_kin.ik.tips.tree_problem import TreeResult
     from nao_kin.view.overlay import chain_scene, comparison_scene
 
     match subject:
@@ -190,7 +190,7 @@ def _motors(scene: Scene, chain: SceneChain) -> set[str]:
 
 def _space_scene(space: Chain | Tree, q: list[float], targets: Mapping[str, Target]) -> Scene:
     """The robot of a chain or tree at given joints, or the chain alone; with its chains and targets."""
-    from nao_kin.tree import Tree
+    from nao_kin.robot.tree import Tree
     from nao_kin.view.overlay import chain_scene
 
     chains = dict(space.chains) if isinstance(space, Tree) else {space.tip_name: space}

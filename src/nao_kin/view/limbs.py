@@ -10,8 +10,8 @@ from nao_kin.view.scene import Leg
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from nao_kin.robot import Robot
-    from nao_kin.urdf_chain import UrdfChain
+    from nao_kin.robot.robot import Robot
+    from nao_kin.robot.urdf_chain import UrdfChain
 
 __all__ = ["legs_of", "limbs", "main_tip"]
 
@@ -105,7 +105,7 @@ def legs_of(robot: Robot, index: Mapping[str, int]) -> tuple[Leg, ...]:
 
 def _leg(name: str, chain: UrdfChain, index: Mapping[str, int]) -> Leg | None:
     from nao_kin.analytic.form import Mismatch
-    from nao_kin.analytic.hexapod import recognise
+    from nao_kin.analytic.hexapod.hexapod_leg import recognise
 
     geometry = recognise(chain.joint_path)
     if isinstance(geometry, Mismatch):

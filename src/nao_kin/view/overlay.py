@@ -14,7 +14,7 @@ from nao_kin.view.scene import Node, Panel, Rod, Scene, SceneChain, SceneJoint
 if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.crosscheck import Comparison
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
     from nao_kin.urdf.elements import Colour
     from nao_kin.view.meshes import Mesh
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.robot.path import joint_range, joint_speed, motor_ranges
 from nao_kin.se3 import from_xyz_rpy
-from nao_kin.urdf_path import joint_range, joint_speed, motor_ranges
 from nao_kin.view.limbs import legs_of, limbs, main_tip
 from nao_kin.view.meshes import Triangulator
 from nao_kin.view.scene import Drive, Node, Scene, SceneChain, SceneJoint
@@ -17,7 +17,7 @@ from nao_kin.view.scene import Drive, Node, Scene, SceneChain, SceneJoint
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from nao_kin.robot import Robot
+    from nao_kin.robot.robot import Robot
     from nao_kin.urdf.document import UrdfDocument
     from nao_kin.urdf.elements import Origin, Shape, Solid, UrdfJoint
     from nao_kin.view.scene import MovingKind

@@ -226,7 +226,7 @@ class Leg:
         base: Index of the body's node.
         foot: Index of the foot's node.
         joints: Its three joints.
-        numbers: The leg's numbers as `nao_kin.analytic.hexapod_kernel.pack` arranges them.
+        numbers: The leg's numbers as `nao_kin.analytic.hexapod.hexapod_leg_kernel.pack` arranges them.
     """
 
     name: str

@@ -9,7 +9,7 @@ import numpy as np
 
 from nao_kin.chain import sampling_range
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.kernels.limits import packed_rules
+from nao_kin.kernels.joint_limits import packed_rules
 from nao_kin.kernels.reaching import Samples
 
 if TYPE_CHECKING:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.checks.catalogue.entry import Entry
-from nao_kin.checks.catalogue.files import FILES
-from nao_kin.checks.catalogue.joints import JOINTS
-from nao_kin.checks.catalogue.links import LINKS
-from nao_kin.checks.catalogue.models import MODELS
-from nao_kin.checks.catalogue.names import NAMES
+from nao_kin.checks.catalogue.file_codes import FILES
+from nao_kin.checks.catalogue.joint_codes import JOINTS
+from nao_kin.checks.catalogue.link_codes import LINKS
+from nao_kin.checks.catalogue.model_codes import MODELS
+from nao_kin.checks.catalogue.name_codes import NAMES
 from nao_kin.errors import UnknownNameError
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import typer
 
-from nao_kin.cli.trajectory.plan import plan
-from nao_kin.cli.trajectory.run import run
-from nao_kin.cli.trajectory.show import show
+from nao_kin.cli.trajectory.trajectory_plan import plan
+from nao_kin.cli.trajectory.trajectory_run import run
+from nao_kin.cli.trajectory.trajectory_show import show
 
 __all__ = ["trajectory"]
 

@@ -1,5 +1,5 @@
 // A leg of three joints in closed form: the joints that bring its foot to a point. The numbers of a leg and the
-// equations are those of nao_kin.analytic.hexapod_kernel, which says where they come from.
+// equations are those of nao_kin.analytic.hexapod.hexapod_leg_kernel, which says where they come from.
 
 const LEG = { turn: 0, origin: 9, coxa: 12, femur: 13, tibia: 14, lateral: 15, signs: 16, offsets: 19, middles: 22 };
 const ROUNDING = 1e-12, SAME_BEND = 1e-14, MERGED = 1e-7; // relative

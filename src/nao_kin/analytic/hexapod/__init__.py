@@ -1,0 +1,1 @@
+"""Legs of three joints, and the body that stands on several of them."""

@@ -1,0 +1,1 @@
+"""NAO's head, arms and legs in closed form."""

@@ -1,0 +1,1 @@
+"""Arms of five and six turning joints: recognised by their axes, solved by the form that fits."""

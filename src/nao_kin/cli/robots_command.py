@@ -1,0 +1,45 @@
+"""`nao-kin robots`: the robots that load by name."""
+
+from __future__ import annotations
+
+from nao_kin.output import FormatOption, OutputFormat, report, report_json
+
+__all__ = ["robots"]
+
+
+def robots(format: FormatOption = OutputFormat.text) -> None:
+    """List the robots that load by name, and the names of the documents' chains."""
+    from nao_kin.documents.chains import DOCUMENT_CHAINS
+    from nao_kin.robot.known import ALIASES, KNOWN_ROBOTS, example_robot_data_share
+    from nao_kin.table import Column, Table
+
+    installed = example_robot_data_share() is not None
+    shorter = {name: alias for alias, name in ALIASES.items()}
+    if format is OutputFormat.json:
+        robots_data = [
+            {
+                "name": robot.name,
+                "alias": shorter.get(robot.name),
+                "title": robot.title,
+                "source": robot.source,
+                "available": robot.source == "bundled" or installed,
+                "chains": {chain: list(frames) for chain, frames in robot.chains.items()},
+            }
+            for robot in KNOWN_ROBOTS.values()
+        ]
+        documents_data = [
+            {"name": name, "source": d.source, "robot": d.robot, "base": d.base, "tip": d.tip}
+            for name, d in DOCUMENT_CHAINS.items()
+        ]
+        report_json({"robots": robots_data, "document_chains": documents_data})
+        return
+    rows = []
+    for robot in KNOWN_ROBOTS.values():
+        name = f"{robot.name} = {shorter[robot.name]}" if robot.name in shorter else robot.name
+        extra = "" if robot.source == "bundled" else "robots"
+        rows.append((name, robot.title, extra))
+    here = "is installed" if installed else "is not installed: pip install 'nao_kin[robots]'"
+    columns = (Column("name"), Column("robot"), Column("extra"))
+    report(Table(columns, tuple(rows), note=f"The extra 'robots' {here}. Any URDF loads by its path."), "")
+    documents = tuple((name, d.source, d.robot) for name, d in DOCUMENT_CHAINS.items())
+    report(Table((Column("document chain"), Column("source"), Column("robot")), documents))

@@ -1,0 +1,1 @@
+"""Several tips of a tree of chains, wanted somewhere at once."""

@@ -1,0 +1,1 @@
+"""A hexapod in motion: footfall, gait, commands to walk."""

@@ -1,0 +1,1 @@
+"""A NAO in motion: feet, torso, gaze, keyframes."""

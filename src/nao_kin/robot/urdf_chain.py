@@ -1,0 +1,249 @@
+"""A chain through a robot, with Pinocchio doing the arithmetic.
+
+Its model is made for the path alone: no joint order but the path's, and one number for a continuous joint as for any
+other.
+"""
+
+from __future__ import annotations
+
+import threading
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio as pin
+
+from nao_kin.chain import (
+    ChainJoint,
+    JacobianFrame,
+    LimitRule,
+    compiled_jacobians,
+    compiled_poses,
+    configuration,
+    limit_table,
+    stacked_limits,
+)
+from nao_kin.errors import InvalidInputError, NoPathError
+from nao_kin.kernels.joint_path import JointPath, joint_path
+from nao_kin.robot.path import Step, chain_joints, walk
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from nao_kin.arrays import Floats
+    from nao_kin.robot.robot import Robot
+
+__all__ = ["UrdfChain"]
+
+
+class _Workspace(threading.local):
+    """Pinocchio's scratch memory, one for each thread, so that a chain may be shared between threads."""
+
+    def __init__(self, model: pin.Model) -> None:
+        self.data = model.createData()
+
+
+_FLOAT64 = np.dtype(np.float64)
+_REFERENCE = {"base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED, "tip": pin.ReferenceFrame.LOCAL}
+
+
+class UrdfChain:
+    """A path through a robot, on a Pinocchio model of its own that is rooted at the base and holds the path only.
+
+    The path may run up the tree and down again: a joint met from its child's side turns the other way. A coupled joint
+    adds to its leader's column; when its leader is not on the path it stands for itself.
+    """
+
+    def __init__(self, robot: Robot, base: str, tip: str, label: str = "") -> None:
+        self._robot, self._base, self._tip, self._label = robot, base, tip, label
+        steps, self._T_joint_tip = walk(robot, base, tip)
+        if not steps:
+            raise NoPathError(base, tip, robot.name)
+        self._steps, self._joints = steps, chain_joints(robot, steps)
+        self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
+        names = set(self.joint_names)
+        self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
+        self._model, self._link_ids, self._tip_id = _serial_model(steps, self._T_joint_tip)
+        self._workspace = _Workspace(self._model)
+        self._shape, self._zeros = (len(self._joints),), np.zeros(len(self._joints))
+        # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
+        self._spread: Floats | None = None
+        if any(step.follows for step in steps):
+            self._spread = np.zeros((len(steps), len(self._joints)))
+            for k, step in enumerate(steps):
+                self._spread[k, step.column] = step.multiplier
+        self._shift = np.array([step.offset for step in steps])
+
+    @property
+    def robot(self) -> Robot:
+        """The robot it belongs to."""
+        return self._robot
+
+    @property
+    def base(self) -> str:
+        """Frame in which poses are given."""
+        return self._base
+
+    @property
+    def tip(self) -> str:
+        """Frame whose pose is given."""
+        return self._tip
+
+    @property
+    def name(self) -> str:
+        """Robot and chain, for messages."""
+        return f"{self._robot.name} {self._label or f'{self._base}→{self._tip}'}"
+
+    @property
+    def base_name(self) -> str:
+        """Name of the base frame."""
+        return self.base
+
+    @property
+    def tip_name(self) -> str:
+        """Name of the tip frame."""
+        return self.tip
+
+    @property
+    def joints(self) -> tuple[ChainJoint, ...]:
+        """The n joints, base to tip."""
+        return self._joints
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(joint.name for joint in self._joints)
+
+    @property
+    def path_joint_names(self) -> tuple[str, ...]:
+        """Names of the m physical joints of the path, followers included; `link_poses` has a row for each."""
+        return tuple(step.joint.name for step in self._steps)
+
+    @property
+    def lower(self) -> Floats:
+        """Least values (n,), read-only; −inf for a continuous joint."""
+        return self._lower
+
+    @property
+    def upper(self) -> Floats:
+        """Greatest values (n,), read-only; +inf for a continuous joint."""
+        return self._upper
+
+    @property
+    def max_velocity(self) -> Floats:
+        """Greatest speeds (n,) [rad/s or m/s], read-only."""
+        return self._max_velocity
+
+    @property
+    def limit_rules(self) -> tuple[LimitRule, ...]:
+        """Coupled limits both of whose joints are in the chain."""
+        return self._limit_rules
+
+    def pose(self, q: ArrayLike) -> pin.SE3:
+        """T_base_tip at q (n,) [rad, m].
+
+        Raises:
+            InvalidInputError: Wrong length or not finite.
+        """
+        data, model = self._workspace.data, self._model
+        pin.forwardKinematics(model, data, self._joint_values(q))
+        return pin.SE3(pin.updateFramePlacement(model, data, self._tip_id))
+
+    def tip_at(self, q: Floats) -> tuple[Floats, Floats]:
+        """Rotation (3, 3) and position (3,) [m] of `pose`, in memory that the next call on this thread overwrites.
+
+        For who checks q (n,) otherwise: numbers that are not finite give a pose that is none.
+        """
+        data, model = self._workspace.data, self._model
+        pin.forwardKinematics(model, data, q if self._spread is None else self._spread @ q + self._shift)
+        placement = pin.updateFramePlacement(model, data, self._tip_id)
+        return placement.rotation, placement.translation
+
+    def jacobian(self, q: ArrayLike, frame: JacobianFrame = "base") -> Floats:
+        """Frame Jacobian (6, n) at q (n,) of the tip point, rows (linear; angular), in axes of base or tip frame.
+
+        Raises:
+            InvalidInputError: Wrong length, not finite, or another frame than these two.
+        """
+        if frame not in _REFERENCE:
+            raise InvalidInputError("frame", "'base' or 'tip'", repr(frame))
+        values = self._joint_values(q)
+        J = pin.computeFrameJacobian(self._model, self._workspace.data, values, self._tip_id, _REFERENCE[frame])
+        J = np.ascontiguousarray(J).reshape(6, -1)  # of a single joint, Pinocchio hands over a vector
+        return J if self._spread is None else J @ self._spread
+
+    def link_poses(self, q: ArrayLike) -> Floats:
+        """Poses (m, 4, 4) in the base frame of the link behind each physical joint of the path, base to tip.
+
+        Raises:
+            InvalidInputError: Wrong length or not finite.
+        """
+        data = self._workspace.data
+        pin.framesForwardKinematics(self._model, data, self._joint_values(q))
+        return np.array([data.oMf[i].homogeneous for i in self._link_ids])
+
+    def q_of(self, posture: Mapping[str, float]) -> Floats:
+        """This chain's part (n,) of a posture of the whole robot; joints that it does not name are at 0.
+
+        Raises:
+            UnknownNameError: A name is no joint of the robot.
+            InvalidInputError: A value is not a finite number, or contradicts a coupling.
+        """
+        values = self._robot.expand(posture)
+        return np.array([values[name] for name in self.joint_names], dtype=np.float64)
+
+    @cached_property
+    def joint_path(self) -> JointPath:
+        """The flat form that compiled code runs on."""
+        flat = (step.flat for step in self._steps)
+        return joint_path(flat, self._T_joint_tip.homogeneous, self._lower, self._upper)
+
+    def poses(self, Q: ArrayLike) -> Floats:
+        """T_base_tip (N, 4, 4) for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        return compiled_poses(self, Q)
+
+    def jacobians(self, Q: ArrayLike) -> Floats:
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        return compiled_jacobians(self, Q)
+
+    def _joint_values(self, q: ArrayLike) -> Floats:
+        # What numpy needs to check a vector costs more than the kinematics, so the usual case is decided by hand: the
+        # product with zeros is 0 for finite numbers only.
+        if type(q) is np.ndarray and q.dtype is _FLOAT64 and q.shape == self._shape and q.dot(self._zeros) == 0.0:
+            values: Floats = q
+        else:
+            values = configuration(self, q)
+        return values if self._spread is None else self._spread @ values + self._shift
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return UrdfChain, (self._robot, self._base, self._tip, self._label)
+
+    def __repr__(self) -> str:
+        return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"
+
+    def _repr_html_(self) -> str:
+        return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
+
+
+def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
+    """The path as a Pinocchio model rooted at its base, the frame ids of the links behind its joints, and the tip's.
+
+    Continuous joints become revolute ones, so every joint takes one number.
+    """
+    model, parent, links = pin.Model(), 0, []
+    for step in steps:
+        kind = pin.JointModelPrismaticUnaligned if step.joint.kind == "prismatic" else pin.JointModelRevoluteUnaligned
+        parent = model.addJoint(parent, kind(step.axis), step.placement, step.joint.name)
+        frame = pin.Frame(f"behind {step.joint.name}", parent, step.behind, pin.FrameType.OP_FRAME)
+        links.append(model.addFrame(frame))
+    return model, links, model.addFrame(pin.Frame("tip", parent, T_joint_tip, pin.FrameType.OP_FRAME))
