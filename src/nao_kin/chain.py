@@ -38,6 +38,7 @@ __all__ = [
     "joint_table",
     "limit_table",
     "limit_text",
+    "limit_texts",
     "neutral",
     "outside_limits",
     "random_configurations",
@@ -348,27 +349,34 @@ def value_unit(joints: Iterable[ChainJoint], per: str = "") -> str:
     return " or ".join(unit + per for unit in units or ["rad"])
 
 
-def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "") -> Table:
-    """The joints of a chain with their values in radians and degrees, or metres."""
-    cells = tuple(
-        (joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}")
+def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "", *, limits: bool = False) -> Table:
+    """The joints of a chain with their values in radians and degrees, or metres; with their ranges and speeds too."""
+    rows = [
+        [joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}"]
         for joint, value in zip(chain.joints, configuration(chain, q).tolist(), strict=True)
-    )
-    columns = (Column("joint"), Column("[rad, m]", number=True), Column("[deg]", number=True))
-    return Table(columns, cells, title=title, note=note)
+    ]
+    headings = ["[rad, m]", "[deg]"]
+    if limits:
+        headings += ["range", f"max [{value_unit(chain.joints, '/s')}]"]
+        for row, (lower, upper, speed) in zip(rows, map(limit_texts, chain.joints), strict=True):
+            row += [lower if lower == upper == "none" else f"{lower} … {upper}", speed]
+    columns = (Column("joint"), *(Column(heading, number=True) for heading in headings))
+    return Table(columns, tuple(map(tuple, rows)), title=title, note=note)
 
 
 def limit_table(chain: JointSpace, title: str) -> Table:
     """The joints of a chain or tree with their kinds, ranges and speeds; coupled ranges are named below."""
     unit, speed = value_unit(chain.joints), value_unit(chain.joints, "/s")
     numbers = (f"lower [{unit}]", f"upper [{unit}]", f"max speed [{speed}]")
-    rows = tuple(
-        (joint.name, joint.kind, *map(limit_text, (joint.lower, joint.upper, joint.max_velocity)))
-        for joint in chain.joints
-    )
+    rows = tuple((joint.name, joint.kind, *limit_texts(joint)) for joint in chain.joints)
     rules = [f"The range of {rule.joint} also depends on {rule.by}." for rule in chain.limit_rules]
     columns = (Column("joint"), Column("kind"), *(Column(heading, number=True) for heading in numbers))
     return Table(columns, rows, title=title, note="\n".join(rules))
+
+
+def limit_texts(joint: ChainJoint) -> tuple[str, str, str]:
+    """Least value, greatest value and greatest speed of a joint for a table."""
+    return limit_text(joint.lower), limit_text(joint.upper), limit_text(joint.max_velocity)
 
 
 def limit_text(value: float) -> str:

@@ -25,7 +25,8 @@ from nao_kin.chain import (
 )
 from nao_kin.errors import InvalidInputError, NoPathError
 from nao_kin.kernels.joint_path import JointPath, joint_path
-from nao_kin.robot.path import Step, chain_joints, walk
+from nao_kin.robot.couplings import spread_and_shift
+from nao_kin.robot.path import PathStep, walk
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +62,8 @@ class UrdfChain:
         steps, self._T_joint_tip = walk(robot, base, tip)
         if not steps:
             raise NoPathError(base, tip, robot.name)
-        self._steps, self._joints = steps, chain_joints(robot, steps)
+        own = [step.joint.name for step in steps if step.coupling.leader == step.joint.name]
+        self._steps, self._joints = steps, tuple(robot.driven_joints[name] for name in own)
         self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
         names = set(self.joint_names)
         self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
@@ -69,12 +71,8 @@ class UrdfChain:
         self._workspace = _Workspace(self._model)
         self._shape, self._zeros = (len(self._joints),), np.zeros(len(self._joints))
         # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
-        self._spread: Floats | None = None
-        if any(step.follows for step in steps):
-            self._spread = np.zeros((len(steps), len(self._joints)))
-            for k, step in enumerate(steps):
-                self._spread[k, step.column] = step.multiplier
-        self._shift = np.array([step.offset for step in steps])
+        spread, self._shift = spread_and_shift([step.coupling for step in steps], own)
+        self._spread: Floats | None = None if len(own) == len(steps) else spread
 
     @property
     def robot(self) -> Robot:
@@ -235,7 +233,7 @@ class UrdfChain:
         return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
 
 
-def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
+def _serial_model(steps: Sequence[PathStep], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
     """The path as a Pinocchio model rooted at its base, the frame ids of the links behind its joints, and the tip's.
 
     Continuous joints become revolute ones, so every joint takes one number.
