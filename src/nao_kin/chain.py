@@ -24,13 +24,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Chain",
     "ChainJoint",
+    "FlatChain",
     "JacobianFrame",
     "JointColumns",
     "JointSpace",
     "LimitRule",
     "OutsideLimit",
-    "compiled_jacobians",
-    "compiled_poses",
     "configuration",
     "finite_difference_jacobian",
     "in_limits",
@@ -43,7 +42,6 @@ __all__ = [
     "outside_limits",
     "random_configurations",
     "sampling_range",
-    "stacked_limits",
     "value_unit",
 ]
 
@@ -172,13 +170,6 @@ class Chain(JointSpace, Protocol):
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
 
 
-def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:
-    """Read-only arrays (lower, upper, max_velocity) of the joints."""
-    columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
-    lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
-    return lower, upper, velocity
-
-
 class JointColumns:
     """Names and limits of what has ``joints``: the part of a `JointSpace` that follows from them."""
 
@@ -210,7 +201,43 @@ class JointColumns:
 
     @cached_property
     def _limits(self) -> tuple[Floats, Floats, Floats]:
-        return stacked_limits(self.joints)
+        rows = [(joint.lower, joint.upper, joint.max_velocity) for joint in self.joints]
+        lower, upper, velocity = (frozen(column.copy()) for column in np.reshape(rows, (-1, 3)).astype(np.float64).T)
+        return lower, upper, velocity
+
+
+class FlatChain(JointColumns):
+    """What has a flat form: the part of a `Chain` that compiled code does, many configurations at a time."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def name(self) -> str:
+            """What to call it in messages."""
+
+        @property
+        def joint_path(self) -> JointPath:
+            """The flat form that compiled code runs on."""
+
+    def poses(self, Q: ArrayLike) -> Floats:
+        """T_base_tip (N, 4, 4) for configurations (N, n), on all cores.
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        from nao_kin.kernels.forward import poses  # imports numba, which costs time
+
+        return poses(self.joint_path, rows(Q, f"Q of {self.name}", len(self.joints)))
+
+    def jacobians(self, Q: ArrayLike) -> Floats:
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n), on all cores.
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        from nao_kin.kernels.forward import jacobians
+
+        return jacobians(self.joint_path, rows(Q, f"Q of {self.name}", len(self.joints)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,28 +325,6 @@ def random_configurations(chain: JointSpace, count: int, rng: np.random.Generato
     if chain.limit_rules:
         Q = np.array([into_limits(chain, q) for q in Q]).reshape(Q.shape)
     return Q
-
-
-def compiled_poses(chain: Chain, Q: ArrayLike) -> Floats:
-    """T_base_tip (N, 4, 4) of every row of Q (N, n), on all cores.
-
-    Raises:
-        InvalidInputError: Wrong shape or not finite.
-    """
-    from nao_kin.kernels.forward import poses  # imports numba, which costs time
-
-    return poses(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
-
-
-def compiled_jacobians(chain: Chain, Q: ArrayLike) -> Floats:
-    """Frame Jacobians (N, 6, n), base axes, of every row of Q (N, n), on all cores.
-
-    Raises:
-        InvalidInputError: Wrong shape or not finite.
-    """
-    from nao_kin.kernels.forward import jacobians
-
-    return jacobians(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
 
 
 def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -> Floats:

@@ -92,7 +92,10 @@ class DHRow:
 def _number(value: object, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
         raise InvalidInputError(what, "a number", repr(value))
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidInputError(what, "a number", "one of too many digits") from None
 
 
 def dh_matrix(row: DHRow, q: float, convention: Convention) -> Floats:

@@ -5,7 +5,6 @@ Pinocchio's own configuration vector stays behind it: outside, a robot has postu
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
+from nao_kin.arrays import finite
 from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, limit_texts
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.robot.couplings import Coupling, couplings_of, driven_joints, stated
@@ -179,7 +179,7 @@ class Robot:
         for name, value in posture.items():
             if name not in self._moving_by_name:
                 raise UnknownNameError("moving joint", name, self.joint_names, self.name)
-            given[name] = _number(value, name)
+            given[name] = finite(value, f"posture, {name}", "[rad or m]")
         values = {name: given.get(name, 0.0) for name in self.joint_names}
         for c in self.couplings:
             if c.follower in given and c.leader not in given:
@@ -343,15 +343,3 @@ def _limit_rule(rule: CoupledLimit) -> LimitRule:
 
 def _clamp(value: float, lower: float, upper: float) -> float:
     return min(max(value, lower), upper)
-
-
-def _number(value: object, joint: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
-        raise InvalidInputError(f"posture, {joint}", "a number [rad or m]", repr(value))
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise InvalidInputError(f"posture, {joint}", "a finite number [rad or m]", repr(value)[:60])
-    return number
