@@ -107,16 +107,3 @@ def test_the_documented_peer_compiles() -> None:
 def test_the_version_is_said_once() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["version"] == nk.__version__
-
-
-def test_contributing_pictures_the_layers() -> None:
-    """The picture leaves out small siblings, never a whole layer, and has the layers in their order."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
-    (picture,) = blocks((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), "text")
-    drawn = re.findall(r"\w+", " ".join(line[:31] for line in picture.splitlines()))
-    small = {"dh_from_chain", "dh_file", "dh_row"}
-    first = [layer.split(" | ")[0].removeprefix("nao_kin.") for layer in contracts[0]["layers"]]
-    places = [drawn.index(name) for name in first if name not in small and name != "tree"]
-    assert places == sorted(places)

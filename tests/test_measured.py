@@ -48,11 +48,11 @@ SOURCES: dict[tuple[str, str], Callable[[], str]] = {
     ("README.md", "15 times"): lambda: f"{module('bench.bench_fk')._GOALS['Jacobians']:g} times",
     ("README.md", "4 times"): lambda: f"{module('bench.bench_ik')._POSE_GOALS[0]:g} times",
     ("README.md", "3 times"): lambda: f"{module('bench.bench_reach')._TIMES:g} times",
-    ("check.md", "64 MB"): lambda: f"{module('checks.rules.meshes')._BYTES // 1024**2} MB",
+    ("check.md", "64 MB"): lambda: f"{module('checks.rules.mesh_rules')._BYTES // 1024**2} MB",
     ("many-solutions.md", "0.5 rad"): lambda: "0.5 rad",  # the argument beside it
     ("notation.md", "45.11 mm"): lambda: f"{below_ankle('l_sole'):.2f} mm",
     ("notation.md", "45.19 mm"): lambda: f"{below_ankle('LLeg'):.2f} mm",
-    ("streaming.md", "12 ms"): lambda: f"{1e3 * module('motion.guard').NAO_PERIOD:g} ms",
+    ("streaming.md", "12 ms"): lambda: f"{1e3 * module('motion.loop.guard').NAO_PERIOD:g} ms",
 }
 
 

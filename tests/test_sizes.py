@@ -13,7 +13,9 @@ LONGEST_FUNCTION = 50
 FILES = sorted(path for folder in ("src", "tests", "tools", "docs") for path in (ROOT / folder).rglob("*.py"))
 SCRIPTS = sorted((ROOT / "src").rglob("*.js"))
 
-LONG_FILES: dict[str, str] = {}
+LONG_FILES: dict[str, str] = {
+    "src/nao_kin/chain.py": "what any chain is, and the free functions on any of them",
+}
 LONG_FUNCTIONS: dict[str, str] = {}
 """By path, or by path and name: why it is as long as it is."""
 

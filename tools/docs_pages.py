@@ -32,7 +32,7 @@ GROUPS: Final[tuple[tuple[str, str, tuple[str, ...]], ...]] = (
     (
         "api-robots",
         "API: robots, chains and tables",
-        ("chain", "dh", "dh_from_chain", "dh_row", "errors", "known", "robot", "tolerances", "tree", "urdf_chain"),
+        ("chain", "dh", "errors", "robot", "tolerances"),
     ),
     ("api-comparing", "API: comparing, and the ledger", ("crosscheck", "documents")),
     ("api-solving", "API: inverse kinematics", ("ik", "solving")),
@@ -44,15 +44,15 @@ GROUPS: Final[tuple[tuple[str, str, tuple[str, ...]], ...]] = (
 """Page, title and home modules of the public names; what lives elsewhere comes on a page of its own."""
 
 MODULES: Final = (
-    "analytic.body",
-    "analytic.intervals",
-    "analytic.looking",
+    "analytic.hexapod.body",
+    "analytic.nao.intervals",
+    "analytic.nao.looking",
     "analytic.redundancy",
-    "analytic.symbolic_head",
+    "analytic.nao.symbolic_head",
     "crosscheck",
     "documents.claim",
     "errors",
-    "ik.catalogue",
+    "ik.methods",
 )
 """Modules whose public names are documented as well; those of `nao_kin.motion` and `nao_kin.trajectory` always are."""
 
@@ -137,8 +137,9 @@ def api_pages() -> dict[str, str]:
 
 def documented_modules() -> tuple[str, ...]:
     """Modules that are documented beside the names of the package, without its name."""
-    motion = importlib.import_module("nao_kin.motion").__path__
-    return (*MODULES, *(f"motion.{module.name}" for module in pkgutil.iter_modules(motion)), "trajectory")
+    motion = pkgutil.walk_packages(importlib.import_module("nao_kin.motion").__path__, "nao_kin.motion.")
+    beside = (module.name.removeprefix("nao_kin.") for module in motion if not module.ispkg)
+    return (*MODULES, *beside, "trajectory")
 
 
 def handed_out() -> tuple[str, ...]:

@@ -69,6 +69,12 @@ def importers(found: list[Module]) -> dict[str, set[str]]:
     return readers
 
 
+def lone(found: list[Module]) -> list[str]:
+    """The modules that a single other module imports."""
+    readers = importers(found)
+    return [module.name for module in found if not module.is_package and len(readers[module.name]) == 1]
+
+
 def parameters(function: Function) -> int:
     """How many parameters a function has, without `self` or `cls`."""
     given = function.args
@@ -109,18 +115,17 @@ def public_classes(found: list[Module]) -> Iterator[str]:
 def main(folder: Path) -> None:
     """Print the table."""
     found = modules(folder)
-    readers = importers(found)
-    lone = [m.name for m in found if not m.is_package and len(readers[m.name]) == 1]
+    alone = lone(found)
     files = twice(m.path.name for m in found if not m.is_package)
     classes = twice(public_classes(found))
     signatures = wide(found)
     print(f"files                          {len(found):6}")
     print(f"lines                          {sum(len(m.path.read_text('utf-8').splitlines()) for m in found):6}")
-    print(f"modules with one importer      {len(lone):6}")
+    print(f"modules with one importer      {len(alone):6}")
     print(f"functions of {WIDE}+ parameters    {len(signatures):6}")
     print(f"file names used twice          {len(files):6}")
     print(f"public classes of one name     {len(classes):6}")
-    for title, names in (("one importer", lone), ("wide", signatures), ("files", files), ("classes", classes)):
+    for title, names in (("one importer", alone), ("wide", signatures), ("files", files), ("classes", classes)):
         print(f"\n{title}:")
         for name in names:
             print(f"  {name}")
