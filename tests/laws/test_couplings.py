@@ -27,6 +27,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.robot.motors import Motors
 from nao_kin.trajectory.joint_space import joint_motion
 from nao_kin.view.robot_scene import robot_scene
+from nao_kin.view.scene_data import scene_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -200,7 +201,8 @@ def test_a_follower_off_the_path_slows_its_motor_everywhere(tmp_path: Path) -> N
     robot = load(OFF_PATH, tmp_path)
     for space in (robot.chain("b", "l1"), robot.chain("b", "l2"), robot.tree("b", ["l1", "l2"]), Motors.of(robot)):
         assert [(joint.name, joint.max_velocity) for joint in space.joints] == [("m", 0.5)]
-    assert [(j.name, j.max_velocity) for j in robot_scene(robot).joints] == [("m", 0.5), ("f", 1.0)]
+    written = json.loads(scene_json(robot_scene(robot)))  # what a page is told
+    assert [(joint["name"], joint["velocity"]) for joint in written["joints"]] == [("m", 0.5), ("f", 1.0)]
     assert [(j.name, j.max_velocity) for j in robot.chain("l1", "l2").joints] == [("f", 1.0)]
     assert robot.joint_table().rows == (
         ("m", "revolute", "rad", "-1", "1", "0.5"),
@@ -220,6 +222,13 @@ def test_the_command_line_says_so_and_slows_down(tmp_path: Path) -> None:
         assert told.stdout.splitlines()[3].split() == ["m", "0.300000", "17.189", "-1", "…", "1", "0.5"]
         told = CliRunner().invoke(application(["fk"]), ["fk", spec, "--format", "json"], catch_exceptions=False)
         assert json.loads(told.stdout)["limits"] == {"m": {"lower": -1.0, "upper": 1.0, "max_velocity": 0.5}}
+
+
+def test_a_trajectory_too_fast_for_a_follower_off_the_path_is_refused(tmp_path: Path) -> None:
+    load(OFF_PATH, tmp_path)
+    (tmp_path / "fast.csv").write_text("time [s],m [rad]\n0,-1\n1,1\n")
+    told = ok("trajectory", "run", tmp_path / "fast.csv", f"{tmp_path / 'robot.urdf'}:b:l1", status=1)
+    assert "m needs a speed of 2 at sample 1; its limit is 0.5." in told
 
 
 def test_joints_that_exclude_each_other_are_refused_but_shown(tmp_path: Path) -> None:
