@@ -188,6 +188,10 @@ def test_every_view_of_200_random_trees_keeps_the_law(tmp_path: Path) -> None:
             leader = shown[raw.motor(name)]
             assert shown[name].max_velocity == pytest.approx(raw.gear(name) * leader.max_velocity, rel=1e-12)
         assert not robot.outside_limits(robot.neutral)
+        ends = {joint.name: joint.upper for joint in motors.joints if joint.upper < math.inf}
+        assert not robot.outside_limits(ends)  # to the last bit, whatever a follower's end rounds to
+        beyond = {outside.joint for outside in robot.outside_limits({name: end + 1e-6 for name, end in ends.items()})}
+        assert {raw.motor(name) for name in beyond} == ends.keys()
         leaders = [raw.joints[name].find("mimic").get("joint") for name in followers]
         seen["a follower's follower"] += bool(followers & set(leaders))
         seen["a range for an endless joint"] += any(

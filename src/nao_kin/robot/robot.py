@@ -15,10 +15,11 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.arrays import finite
-from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, limit_texts
+from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, into_limits, limit_texts
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.robot.couplings import Coupling, couplings_of, driven_joints, stated
 from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
+from nao_kin.robot.motors import Motors
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
 from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
@@ -156,13 +157,9 @@ class Robot:
         Raises:
             InvalidInputError: A follower's range excludes its leader's.
         """
-        followers = {c.follower for c in self.couplings}
-        motors = (joint for name, joint in self.driven_joints.items() if name not in followers)
-        posture = {joint.name: _clamp(0.0, joint.lower, joint.upper) for joint in motors}
-        for rule in self.limit_rules:
-            if rule.joint in posture and rule.by in posture:
-                posture[rule.joint] = _clamp(posture[rule.joint], *rule.range(posture[rule.by]))
-        return self.expand(posture)
+        motors = Motors.of(self)
+        q = into_limits(motors, np.zeros(len(motors.joints)))
+        return self.expand(dict(zip(motors.joint_names, q.tolist(), strict=True)))
 
     def expand(self, posture: Mapping[str, float]) -> dict[str, float]:
         """The posture of every moving joint: what is not named is at 0, followers go with their leaders.
@@ -339,7 +336,3 @@ class Robot:
 def _limit_rule(rule: CoupledLimit) -> LimitRule:
     at, lower, upper = zip(*rule.table, strict=True)
     return LimitRule(rule.joint, rule.by, at, lower, upper, even=rule.even)
-
-
-def _clamp(value: float, lower: float, upper: float) -> float:
-    return min(max(value, lower), upper)
