@@ -29,6 +29,7 @@ __all__ = [
     "JointColumns",
     "JointSpace",
     "LimitRule",
+    "MovingKind",
     "OutsideLimit",
     "configuration",
     "finite_difference_jacobian",
@@ -46,6 +47,7 @@ __all__ = [
 ]
 
 JacobianFrame: TypeAlias = Literal["base", "tip"]
+MovingKind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ class ChainJoint:
     """
 
     name: str
-    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
+    kind: MovingKind = "revolute"
     lower: float = -math.inf
     upper: float = math.inf
     max_velocity: float = math.inf
