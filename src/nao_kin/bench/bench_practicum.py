@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nao_kin.arrays import Floats
-    from nao_kin.documents.practicum_ik import TaskResult
+    from nao_kin.documents.practicum.position_ik import TaskResult
 
 __all__ = ["practicum"]
 
@@ -90,8 +90,8 @@ def _both(starts: Floats, wanted: Floats, where: str) -> dict[str, Floats]:
     """Errors (N, 129) [m] of both methods over the iterations."""
     import numpy as np
 
-    from nao_kin.documents.practicum import jaco2
-    from nao_kin.documents.practicum_ik import ik_pseudo_inverse, ik_transpose
+    from nao_kin.documents.practicum.position_ik import ik_pseudo_inverse, ik_transpose
+    from nao_kin.documents.practicum.sheet import jaco2
     from nao_kin.ik.scales import chain_scales
     from nao_kin.output import progress
 
@@ -138,8 +138,8 @@ def _checked(starts: Floats, wanted: Floats, name: str, where: str) -> tuple[She
     """Task 1g: how often the pseudo-inverse jumps or misses, and how many faults the check is silent about."""
     import numpy as np
 
-    from nao_kin.documents.practicum import jaco2
-    from nao_kin.documents.practicum_ik import LARGEST_JUMP, ik_checked
+    from nao_kin.documents.practicum.position_ik import LARGEST_JUMP, ik_checked
+    from nao_kin.documents.practicum.sheet import jaco2
     from nao_kin.output import progress
 
     arm, pairs = jaco2(), list(zip(starts, wanted, strict=True))

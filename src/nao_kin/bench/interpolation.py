@@ -63,7 +63,7 @@ def compare(count: int, seed: int) -> Comparison:
 
 def _direct(arm: Chain, q: Floats, p: Floats) -> _Trip:
     """The sheet's IK to the end, and all joints driven there at once."""
-    from nao_kin.documents.practicum_ik import ik_pseudo_inverse
+    from nao_kin.documents.practicum.position_ik import ik_pseudo_inverse
 
     return _trip(arm, [q, ik_pseudo_inverse(q, p, chain=arm).q], p)
 
@@ -72,8 +72,8 @@ def _stepwise(arm: Chain, q: Floats, p: Floats) -> _Trip:
     """The sheet's IK to each point of the line; where a point is missed or a joint leaps, it ends."""
     import numpy as np
 
-    from nao_kin.documents.practicum_ik import ik_checked
-    from nao_kin.documents.practicum_tasks import interpolate_position
+    from nao_kin.documents.practicum.position_ik import ik_checked
+    from nao_kin.documents.practicum.practicum_tasks import interpolate_position
 
     start = arm.pose(q).translation.copy()
     points = interpolate_position(start, p, math.ceil(float(np.linalg.norm(p - start)) / _APART) - 1)

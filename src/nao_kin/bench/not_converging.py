@@ -48,7 +48,7 @@ def _row(reason: str, starts: Floats, wanted: Floats, before: Solve, remedy: str
 
 
 def _pseudo() -> Solve:
-    from nao_kin.documents.practicum_ik import ik_pseudo_inverse
+    from nao_kin.documents.practicum.position_ik import ik_pseudo_inverse
 
     return lambda q, p: ik_pseudo_inverse(q, p).error
 
@@ -57,7 +57,7 @@ def _transpose(arm: UrdfChain, gain: float, iterations: int = 128) -> Solve:
     """The sheet's transpose with K = gain/σ², σ the largest singular value over 256 postures: below 2 it converges."""
     import numpy as np
 
-    from nao_kin.documents.practicum_ik import ik_transpose
+    from nao_kin.documents.practicum.position_ik import ik_transpose
     from nao_kin.ik.scales import chain_scales
 
     configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (256, 6))
@@ -105,7 +105,7 @@ def _stretched(arm: UrdfChain, count: int, rng: Any) -> tuple[Floats, Floats]:
 
 
 def _bent(rng: Any) -> Solve:
-    from nao_kin.documents.practicum_ik import ik_pseudo_inverse
+    from nao_kin.documents.practicum.position_ik import ik_pseudo_inverse
 
     return lambda q, p: ik_pseudo_inverse(q + rng.uniform(-0.1, 0.1, 6), p).error
 
