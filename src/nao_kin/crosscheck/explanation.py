@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from nao_kin.chain import random_configurations
-from nao_kin.crosscheck.precision import printed_resolution
 from nao_kin.crosscheck.search import MOST_EDITS, Candidate, Search, applied
 from nao_kin.crosscheck.smallest import SmallestChanges, smallest_changes
-from nao_kin.crosscheck.tables import Goal, Tables, errors_of, goal_of, motion
+from nao_kin.crosscheck.tables import ALPHA, THETA, A, D, Goal, Tables, errors_of, goal_of, motion
 from nao_kin.crosscheck.wording import size_text
 from nao_kin.se3 import position_distance, rotation_distance
 from nao_kin.table import Column, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     import pinocchio as pin
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from nao_kin.dh.dh_chain import DHChain
     from nao_kin.tolerances import Tolerances
 
-__all__ = ["Alternative", "Explanation", "Step", "explain"]
+__all__ = ["Alternative", "Explanation", "Resolution", "Step", "explain", "printed_resolution"]
 
 _SEARCHED_ON: Final = 6  # configurations: 36 numbers, more than any table has unknowns
 _CONFIRMED_ON: Final = 24
@@ -246,3 +246,64 @@ def _steps(printed: Tables, candidate: Candidate, b: Chain) -> tuple[Step, ...]:
         rotation = 2.0 * np.arcsin(min(1.0, float(chord[0]) / 2.0))
         steps.append(Step(left_out.kind, left_out.text, float(position[0]), float(rotation)))
     return tuple(steps)
+
+
+_FINEST_DIGIT = 6  # decimals of a metre, radian or degree; what needs more was computed, not printed
+_EXACT_ANGLES = math.pi / 12
+_COARSEST = 0.01  # [m, rad] nobody prints less: such round numbers are round, or in another unit than is said
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """What the digits of a table can say.
+
+    Attributes:
+        length: Unit of the last digit of its lengths [m]; 0 if they have all digits.
+        angle: The same for its angles [rad].
+        position: How far the tip can be off by rounding alone [m]: half a unit of every number, at full reach.
+        rotation: The same for its orientation [rad].
+    """
+
+    length: float
+    angle: float
+    position: float
+    rotation: float
+
+
+def printed_resolution(table: Tables) -> Resolution:
+    """The resolution of a table, read off its numbers.
+
+    All lengths are taken to be printed to the decimal of the one with the most. Multiples of 15° are exact; other
+    angles were printed in degrees or radians, whichever they have few decimals in. More than six decimals are no print,
+    nor are fewer than two: such numbers count as exact.
+
+    Args:
+        table: A batch of one.
+    """
+    numbers = table.numbers[0]
+    lengths = [
+        x
+        for x in (*numbers[:, [A, D]].ravel(), *table.base_translation[0], *table.tool_in_tip_axes[0])
+        if abs(x) > 1e-12
+    ]
+    angles = [x for x in numbers[:, [ALPHA, THETA]].ravel() if not _is_multiple(x, _EXACT_ANGLES)]
+    length = _last_digit(lengths)
+    angle = max(math.radians(_last_digit(math.degrees(x) for x in angles)), _last_digit(angles))
+    length, angle = (unit if unit <= _COARSEST else 0.0 for unit in (length, angle))
+    rotation = 0.5 * angle * len(angles)
+    position = 0.5 * length * len(lengths) + rotation * float(np.abs(lengths).sum() if lengths else 0.0)
+    return Resolution(length, angle, position, rotation)
+
+
+def _last_digit(values: Iterable[float]) -> float:
+    """The largest power of ten, at most 1, of which all values are multiples; 0 if none of the first decimals is."""
+    values = list(values)
+    for decimals in range(_FINEST_DIGIT + 1):
+        unit = 10.0**-decimals
+        if values and all(_is_multiple(x, unit) for x in values):
+            return unit
+    return 0.0
+
+
+def _is_multiple(value: float, unit: float) -> bool:
+    return abs(value / unit - round(value / unit)) * unit < 1e-11

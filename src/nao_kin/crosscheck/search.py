@@ -16,8 +16,7 @@ import numpy as np
 from nao_kin.crosscheck.edits import Edit, known_edits
 from nao_kin.crosscheck.lengths import length_edits
 from nao_kin.crosscheck.tables import Goal, Motion, Tables, errors_of, motion
-from nao_kin.crosscheck.turn_pairs import fitted_pairs
-from nao_kin.crosscheck.turns import fitted_turns
+from nao_kin.crosscheck.turns import fitted_pairs, fitted_turns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

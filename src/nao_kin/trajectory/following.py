@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from nao_kin.arrays import Floats, frozen, positive, vector
 from nao_kin.errors import InvalidInputError
+from nao_kin.ik.measure import measure_many
 from nao_kin.ik.problem import Status
 from nao_kin.ik.reference_loop import Budget
-from nao_kin.ik.target import Target, TargetLike
+from nao_kin.ik.target import KINDS, Target, TargetLike
 from nao_kin.solving import CLOSED, solve
 from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances
-from nao_kin.trajectory.between import error_between
 from nao_kin.trajectory.causes import NEAR_SINGULAR, Cause, cause_of, singular_values
 from nao_kin.trajectory.demand import Demand, demand_of
+from nao_kin.trajectory.paths import PoseLine
 from nao_kin.trajectory.scaling import slowed
 from nao_kin.trajectory.synchrony import per_axis
 from nao_kin.trajectory.timing import TimedPath
 from nao_kin.trajectory.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from nao_kin.chain import Chain
 
-__all__ = ["FollowResult", "follow"]
+__all__ = ["FollowResult", "error_between", "follow"]
 
 _ONE_START = Budget(restarts=0, largest_step=0.2)  # another start would be another branch
 
@@ -277,3 +278,50 @@ def _limits(chain: Chain, max_velocity: ArrayLike | None, max_acceleration: Arra
         for joint, value in zip(chain.joint_names, values, strict=True):
             positive(float(value), f"{what} of {joint}", endless=True)
     return speeds, rates
+
+
+_PARTS: Final = (0.25, 0.5, 0.75)
+
+
+def error_between(
+    chain: Chain, targets: Sequence[Target], Q: Sequence[Floats], timing: TimedPath | None
+) -> tuple[float, float]:
+    """Largest position error [m] and rotation error [rad] at a quarter, the half and three quarters of every step.
+
+    The path there is the timed path at the same time or, of bare targets, the straight line and even turn from one to
+    the next. Steps between targets of different kinds or weights are passed over.
+
+    Args:
+        chain: The chain.
+        targets: What is wanted at the samples (k).
+        Q: Joints at the samples (k).
+        timing: Where the targets come from, if they have times.
+    """
+    steps = [i for i in range(len(Q) - 1) if _alike(targets[i], targets[i + 1])]
+    if not steps:
+        return 0.0, 0.0
+    wanted = [_wanted(targets, i, part, timing) for i in steps for part in _PARTS]
+    tips = chain.poses(np.array([(1.0 - part) * Q[i] + part * Q[i + 1] for i in steps for part in _PARTS]))
+    worst = np.zeros(2)
+    for key in {(target.kind, target.counts) for target in wanted}:
+        chosen = [n for n, target in enumerate(wanted) if (target.kind, target.counts) == key]
+        goals = np.array([wanted[n].goal for n in chosen])
+        found = measure_many(KINDS[key[0]], goals, key[1], tips[chosen])
+        worst = np.fmax(worst, [np.fmax.reduce(errors) for errors in found])  # NaN is what a target leaves free
+    return float(worst[0]), float(worst[1])
+
+
+def _alike(one: Target, other: Target) -> bool:
+    return one.kind == other.kind and one.weights == other.weights
+
+
+def _wanted(targets: Sequence[Target], i: int, part: float, timing: TimedPath | None) -> Target:
+    if timing is not None:
+        return timing.target_at((1.0 - part) * timing.times[i] + part * timing.times[i + 1])
+    one, other = targets[i], targets[i + 1]
+    goal = (1.0 - part) * one.goal + part * other.goal
+    if one.kind in ("pose", "orientation"):
+        goal[:3, :3] = PoseLine(one.goal, other.goal).target(part).goal[:3, :3]
+    if one.kind == "pointing":
+        goal[:3, :2] /= np.linalg.norm(goal[:3, :2], axis=0)
+    return Target(one.kind, goal, one.weights)
