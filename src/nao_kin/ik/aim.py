@@ -8,7 +8,7 @@ column a unit axis in tip axes and its second column the unit axis in base axes 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from nao_kin.kernels.compiling import leaf_jit
 
@@ -20,6 +20,7 @@ __all__ = [
     "POINTING",
     "POSE",
     "POSITION",
+    "Aim",
     "goal_violation",
     "raw_error",
     "rotation_vector",
@@ -30,6 +31,20 @@ POSE: Final = 0
 POSITION: Final = 1
 POINTING: Final = 2
 ORIENTATION: Final = 3
+
+
+class Aim(NamedTuple):
+    """What the geometric methods head for.
+
+    Attributes:
+        kind: What is wanted, one of the numbers above.
+        goal: The target (4, 4).
+        closeness: Weight of the squared distance [1/m²] against the rotation, see `nao_kin.ik.starts`.
+    """
+
+    kind: int
+    goal: Floats
+    closeness: float
 
 
 @leaf_jit

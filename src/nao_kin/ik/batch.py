@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_kin.arrays import rows
 from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik import layout
+from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.compiled import ENDED, solve_goals
 from nao_kin.ik.measure import measure_many
 from nao_kin.ik.problem import Problem, Run, Status, judge
@@ -220,11 +220,11 @@ def _chunks(count: int) -> Iterator[slice]:
 
 def _refuse(outcomes: Floats, offset: int) -> None:
     """Raises for the first row whose target or start made no sense."""
-    bad = np.flatnonzero(outcomes[:, layout.CODE] < 0.0)
+    bad = np.flatnonzero(outcomes[:, loop.CODE] < 0.0)
     if not len(bad):
         return
-    row, amount = offset + int(bad[0]), float(outcomes[bad[0], layout.AMOUNT])
-    if outcomes[bad[0], layout.CODE] == layout.BAD_START:
+    row, amount = offset + int(bad[0]), float(outcomes[bad[0], loop.AMOUNT])
+    if outcomes[bad[0], loop.CODE] == loop.BAD_START:
         raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
@@ -236,18 +236,18 @@ def judge_rows(
     """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
     from nao_kin.kernels.audit import tips
 
-    chain, q = result.chain, np.ascontiguousarray(outcomes[:, layout.OUTCOME :])
+    chain, q = result.chain, np.ascontiguousarray(outcomes[:, loop.OUTCOME :])
     position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
     inside = inside_limits(chain, q, tolerances.limits)
-    codes = outcomes[:, layout.CODE].astype(np.int8)
+    codes = outcomes[:, loop.CODE].astype(np.int8)
     ended = np.array([_STATUSES.index(status) for status in ENDED], dtype=np.int8)[codes]
     ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
     ended[reached & inside] = _STATUSES.index(Status.SOLVED)
     ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
     result.q[chunk], result.codes[chunk] = q, ended
     result.position_error[chunk], result.rotation_error[chunk] = position, rotation
-    result.iterations[chunk] = outcomes[:, layout.ITERATIONS]
+    result.iterations[chunk] = outcomes[:, loop.ITERATIONS]
 
 
 def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, layout
-from nao_kin.ik import compiled_loop as descent
+from nao_kin.ik import aim
+from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.orientation import ROTATION_VECTOR
 from nao_kin.ik.problem import Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
@@ -18,7 +18,7 @@ from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.joint_limits import packed_rules
-from nao_kin.kernels.motion import packed_joints
+from nao_kin.kernels.motion import Arm, packed_joints
 from nao_kin.se3 import ROTATION_TOLERANCE
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
 
 def _tables(chain: Chain, seed: int) -> Tables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
-    joints, size = packed_joints(chain.joint_path), layout.OUTCOME + len(chain.joints)
+    joints, size = packed_joints(chain.joint_path), loop.OUTCOME + len(chain.joints)
     limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
     return Tables(
         joints=joints,
@@ -99,7 +99,7 @@ def _tables(chain: Chain, seed: int) -> Tables:
         closeness=starts.closeness,
         shell=np.array([*shell.centre, shell.inner * (1.0 - _ROUNDING), shell.outer * (1.0 + _ROUNDING)]),
         outcome_size=size,
-        work_size=size + descent.scratch_size(joints, starts.table),
+        work_size=size + loop.scratch_size(joints, starts.table),
     )
 
 
@@ -128,27 +128,27 @@ def settings_of(
         parameters: Those of the rule, in its order.
         orientation_error: A form of it, see `nao_kin.ik.orientation`.
     """
-    settings = np.zeros(layout.SETTINGS)
-    settings[layout.KIND], settings[layout.RULE] = kind, rule
-    settings[layout.MAX_ITERATIONS], settings[layout.RESTARTS] = budget.iterations, budget.restarts
-    settings[layout.PATIENCE], settings[layout.LARGEST_STEP] = budget.patience, budget.largest_step
-    settings[layout.FROM_STORED] = from_stored
-    settings[layout.POSITION_TOLERANCE], settings[layout.ROTATION_TOLERANCE] = (
+    settings = np.zeros(loop.SETTINGS)
+    settings[loop.KIND], settings[loop.RULE] = kind, rule
+    settings[loop.MAX_ITERATIONS], settings[loop.RESTARTS] = budget.iterations, budget.restarts
+    settings[loop.PATIENCE], settings[loop.LARGEST_STEP] = budget.patience, budget.largest_step
+    settings[loop.FROM_STORED] = from_stored
+    settings[loop.POSITION_TOLERANCE], settings[loop.ROTATION_TOLERANCE] = (
         tolerances.position,
         tolerances.rotation,
     )
-    settings[layout.GOAL_TOLERANCE] = ROTATION_TOLERANCE
-    settings[layout.WEIGHTS : layout.WEIGHTS + 6] = weights
-    settings[layout.CENTRE : layout.OUTER + 1] = tables.shell
-    settings[layout.CLOSENESS] = tables.closeness
-    settings[layout.ORIENTATION_ERROR] = orientation_error
-    settings[layout.GAINS : layout.GAINS + len(parameters)] = parameters
+    settings[loop.GOAL_TOLERANCE] = ROTATION_TOLERANCE
+    settings[loop.WEIGHTS : loop.WEIGHTS + 6] = weights
+    settings[loop.CENTRE : loop.OUTER + 1] = tables.shell
+    settings[loop.CLOSENESS] = tables.closeness
+    settings[loop.ORIENTATION_ERROR] = orientation_error
+    settings[loop.GAINS : loop.GAINS + len(parameters)] = parameters
     return settings
 
 
 def trace_rows(outcome: Floats, n: int) -> Floats:
     """Room for the trace of a solve with this outcome: a row (q, position error, rotation error, start) an iterate."""
-    return np.empty((int(outcome[layout.ITERATIONS] + outcome[layout.STARTS]), n + 3))
+    return np.empty((int(outcome[loop.ITERATIONS] + outcome[loop.STARTS]), n + 3))
 
 
 def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
@@ -165,18 +165,19 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
     if trace is None:
         work = np.empty(t.work_size)
         memory = _memory(tables, settings)
-        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
+        loop.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
         return work[: t.outcome_size]
     outcome, scratch, memory = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size), _memory(t, settings)
-    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
+    arm = Arm(t.joints, t.limits, t.coupled)
+    loop.solve_one(arm, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
     return outcome
 
 
 def _memory(tables: Tables, settings: Floats) -> Floats | None:
     """What methods other than the default need besides."""
-    if settings[layout.RULE] == LEVENBERG_MARQUARDT:
+    if settings[loop.RULE] == LEVENBERG_MARQUARDT:
         return None
-    return np.empty(descent.memory_size(tables.joints, tables.limits.shape[1]))
+    return np.empty(loop.memory_size(tables.joints, tables.limits.shape[1]))
 
 
 def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
@@ -186,7 +187,7 @@ def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> 
     """
     t = tables
     outcomes, memory = np.empty((len(goals), t.outcome_size)), _memory(t, settings)
-    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size, memory)
+    loop.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, memory)
     return outcomes
 
 
@@ -202,16 +203,16 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         InvalidInputError: The target or the start made no sense; carries the size of the violation.
     """
     told = outcome.tolist()
-    code, iterations, starts = int(told[layout.CODE]), int(told[layout.ITERATIONS]), int(told[layout.STARTS])
+    code, iterations, starts = int(told[loop.CODE]), int(told[loop.ITERATIONS]), int(told[loop.STARTS])
     if code < 0:
-        raise _refusal(code, told[layout.AMOUNT])
+        raise _refusal(code, told[loop.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
-    moved, amount = told[layout.START_MOVED] != 0.0, told[layout.AMOUNT]
-    return Run(outcome[layout.OUTCOME :], ENDED[code], iterations, starts, moved, amount, "", iterates)
+    moved, amount = told[loop.START_MOVED] != 0.0, told[loop.AMOUNT]
+    return Run(outcome[loop.OUTCOME :], ENDED[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:
-    if code == layout.BAD_START:
+    if code == loop.BAD_START:
         return InvalidInputError("q0", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     return InvalidInputError("target", "a rigid pose, a position, or unit axes", got)

@@ -1,4 +1,7 @@
-"""The reference loop: iterate an update rule on any object that offers `pose` and `jacobian`, limits inside."""
+"""The reference loop: iterate an update rule on any object that offers `pose` and `jacobian`, limits inside.
+
+`nao_kin.ik.compiled_loop` is its compiled twin, the same iteration on flat arrays; a test holds them together.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ from nao_kin.ik.rules import update
 from nao_kin.ik.starts import STORED, make_starts, nearest_first
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.joint_limits import packed_rules
-from nao_kin.kernels.motion import packed_joints, place
+from nao_kin.kernels.motion import Arm, At, packed_joints, place
 from nao_kin.tolerances import Tolerances
 
 if TYPE_CHECKING:
@@ -223,7 +226,8 @@ class _Search:
         axes, tip, swept = np.empty((len(joints) - 1, 6)), np.empty(12), q.copy()
         place(joints, swept, axes, tip)
         memory = np.empty(sweep_memory(joints))
-        sweep(self.method.rule, joints, limits, coupled, self.kind, self.goal, self.closeness, swept, axes, tip, memory)
+        wanted = aim.Aim(self.kind, self.goal, self.closeness)
+        sweep(self.method.rule, Arm(joints, limits, coupled), wanted, At(swept, axes, tip), memory)
         return swept
 
     def _bounded(self, step: Floats) -> Floats:

@@ -14,7 +14,7 @@ import pinocchio as pin
 from nao_kin.arrays import positive
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import layout
+from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.methods import METHODS, Method, method_named
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
@@ -88,7 +88,7 @@ def solve(
     start = ready.neutral if q0 is None else start_of(chain, q0)
     allowed = math.inf if jump is None else positive(jump, "jump", "[rad or m]", endless=True)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
-    if trace and outcome[layout.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
+    if trace and outcome[loop.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
         outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
