@@ -17,7 +17,7 @@ from nao_kin.arrays import positive
 from nao_kin.chain import configuration, into_limits, neutral
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import compiled_loop as loop
-from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_rows, judge_rows, starts_of
+from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_batch, judge_rows, starts_of
 from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.reach import reach_shell
@@ -102,7 +102,7 @@ def solve_closed_batch(
         chunk = slice(first, min(first + CHUNK, len(result)))
         outcomes = _outcomes(chain, found, wanted, chunk, starts[chunk] if len(starts) > 1 else starts, tolerances)
         judge_rows(wanted.first, tolerances, wanted.goals(chunk), outcomes, result, chunk)
-    audit_rows(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
+    audit_batch(result, wanted, tolerances, seed, everything=audit == "all")
     return result
 
 

@@ -12,7 +12,7 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.ik import aim
 from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.orientation import ROTATION_VECTOR
-from nao_kin.ik.problem import Run, Status, Trace
+from nao_kin.ik.problem import STATUSES, Run, Trace
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
@@ -31,20 +31,10 @@ if TYPE_CHECKING:
     from nao_kin.ik.reference_loop import Budget
     from nao_kin.tolerances import Tolerances
 
-__all__ = ["ENDED", "KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
+__all__ = ["KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
-# By the codes of `nao_kin.ik.compiled_loop`, which count from 0.
-ENDED: Final = (
-    Status.SOLVED,
-    Status.STALLED,
-    Status.BUDGET_SPENT,
-    Status.OUT_OF_REACH,
-    Status.NOT_FINITE,
-    Status.NO_SOLUTION,
-)
-"""Why a run ended, by the codes of `nao_kin.ik.layout`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -208,7 +198,7 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         raise _refusal(code, told[loop.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
     moved, amount = told[loop.START_MOVED] != 0.0, told[loop.AMOUNT]
-    return Run(outcome[loop.OUTCOME :], ENDED[code], iterations, starts, moved, amount, "", iterates)
+    return Run(outcome[loop.OUTCOME :], STATUSES[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:

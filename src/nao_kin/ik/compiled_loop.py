@@ -18,8 +18,9 @@ import numpy as np
 from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, Aim, goal_violation, raw_error, shape_rows
 from nao_kin.ik.geometric.sweep import CCD, sweep, sweep_memory
 from nao_kin.ik.orientation import recast_rows
-from nao_kin.ik.reference_loop import PATIENCE_ONCE_REACHED, POLISHED, REACHED
+from nao_kin.ik.problem import Status
 from nao_kin.ik.rules import PARAMETERS, levenberg_marquardt, update
+from nao_kin.ik.stopping import REACHED, gives_up, improved, is_polished, step_scale
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.joint_limits import hold, move_inside
 from nao_kin.kernels.motion import Arm, At, jacobian, place
@@ -32,9 +33,16 @@ if TYPE_CHECKING:
 # error in units of its tolerance; the best joints follow.
 POSITION_ERROR, ROTATION_ERROR, CODE, ITERATIONS, STARTS, START_MOVED, AMOUNT, MERIT, OUTCOME = range(9)
 
-# Codes. The amount is by how much the target misses the reach [m], by how much the goal is none (see `goal_violation`),
-# or which joint of the start is not finite.
-SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE, NO_SOLUTION = range(6)
+# Codes: the numbers of `Status`, or below 0 where nothing was tried. The amount is by how much the target misses the
+# reach [m], by how much the goal is none (see `goal_violation`), or which joint of the start is not finite.
+SOLVED, STALLED, BUDGET_SPENT, OUT_OF_REACH, NOT_FINITE, NO_SOLUTION = (
+    Status.SOLVED.number,
+    Status.STALLED.number,
+    Status.BUDGET_SPENT.number,
+    Status.OUT_OF_REACH.number,
+    Status.NOT_FINITE.number,
+    Status.NO_SOLUTION.number,
+)
 BAD_GOAL, BAD_START = -1, -2
 
 # Entries of the settings (SETTINGS,): kind of target, update rule, the budget's four, whether the first start is the
@@ -295,11 +303,11 @@ def _descend(
         raw_error(kind, goal, tip, raw)
         merit, within = _note(settings, q, raw, outcome, trace)
         reached = reached or within
-        if reached and (merit <= POLISHED or merit >= previous):
+        if reached and is_polished(merit, previous):
             return SOLVED
-        previous, waited = merit, 0 if merit < 0.5 * halved else waited + 1
+        previous, waited = merit, 0 if improved(merit, halved) else waited + 1
         halved = merit if waited == 0 else halved
-        if waited >= (min(settings[PATIENCE], PATIENCE_ONCE_REACHED) if reached else settings[PATIENCE]):
+        if gives_up(waited, settings[PATIENCE], reached):
             return SOLVED if reached else STALLED
         if iteration == allowed:
             break
@@ -389,7 +397,7 @@ def take_step(step: Floats, largest_step: float, limits: Floats, coupled: Floats
         nothing += 0.0 * step[k]  # NaN of NaN and of infinity
     if nothing != 0.0:
         return False
-    scale = largest_step / largest if largest > largest_step else 1.0
+    scale = step_scale(largest, largest_step)
     for k in range(q.shape[0]):
         q[k] += scale * step[k]
     move_inside(q, limits, coupled)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from nao_kin.analytic.nao.nao_arm import BASE, HAND, JOINTS, LENGTH, OFFSET, REACH, SHIFTS, TIP
 from nao_kin.analytic.nao.nao_arm_joints import (
@@ -17,6 +17,7 @@ from nao_kin.analytic.nao.nao_arm_joints import (
     write,
 )
 from nao_kin.analytic.nao.nao_arm_pointing import pointing
+from nao_kin.ik.target import POSE, POSITION
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import (
     Three,
@@ -39,10 +40,6 @@ if TYPE_CHECKING:
 
 __all__ = ["solve", "solve_many"]
 
-# Numbers of `nao_kin.analytic.form.GOALS`.
-_POSE: Final = 0
-_POSITION: Final = 1
-
 
 @parallel_jit
 def solve_many(
@@ -58,9 +55,9 @@ def solve_many(
 @leaf_jit
 def solve(parameters: Floats, kind: int, goal: Floats, given: Floats, slack: float, rows: Floats) -> int:
     """Writes every solution of a goal into rows (B, n + 2); see `nao_kin.analytic.form.ClosedForm`."""
-    if kind == _POSE:
+    if kind == POSE:
         return _pose(parameters, goal, slack, rows)
-    if kind == _POSITION:
+    if kind == POSITION:
         return _position(parameters, goal, given, slack, rows)
     return pointing(parameters, goal, slack, rows)
 

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.analytic.nao.nao_head import BASE, HEAD, NECK, TIP
+from nao_kin.ik.target import ORIENTATION, POSE, POSITION
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.rotation import (
     Three,
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["solve", "solve_many"]
 
-# Numbers of `nao_kin.analytic.form.GOALS`.
-_POSE: Final = 0
-_POSITION: Final = 1
-_ORIENTATION: Final = 3
 
 _NOTHING: Final = 1e-13  # lengths below this part of the tip's distance from the neck are rounding
 
@@ -50,12 +47,12 @@ def solve(parameters: Floats, kind: int, goal: Floats, given: Floats, slack: flo
     base, head = rotation_at(parameters, BASE), rotation_at(parameters, HEAD)
     p = (goal[0, 3] - parameters[NECK], goal[1, 3] - parameters[NECK + 1], goal[2, 3] - parameters[NECK + 2])
     d, t = turned_back(base, p), vector_at(parameters, TIP)
-    if kind == _POSITION:
+    if kind == POSITION:
         return _carry(t, d, slack, rows)
-    if kind in (_POSE, _ORIENTATION):
+    if kind in (POSE, ORIENTATION):
         R = times_transposed(transposed_times(base, rotation_of_goal(goal)), head)
         r = turned(R, t)
-        if kind == _POSE and math.hypot(math.hypot(d[0] - r[0], d[1] - r[1]), d[2] - r[2]) > slack:
+        if kind == POSE and math.hypot(math.hypot(d[0] - r[0], d[1] - r[1]), d[2] - r[2]) > slack:
             return 0
         rows[0, 0], rows[0, 1] = math.atan2(-R[1], R[4]), math.atan2(-R[6], R[8])
         rows[0, 2], rows[0, 3] = 0.0, 0.0

@@ -13,9 +13,10 @@ from nao_kin.ik.geometric.fabrik_tree import tree_sweep
 from nao_kin.ik.geometric.sweep import FABRIK
 from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import Status
-from nao_kin.ik.reference_loop import PATIENCE_ONCE_REACHED, POLISHED, REACHED, Update
+from nao_kin.ik.reference_loop import Update
 from nao_kin.ik.rules import DAMPED
 from nao_kin.ik.starts import STORED
+from nao_kin.ik.stopping import POLISHED, REACHED, gives_up, improved, is_polished, step_scale
 from nao_kin.ik.tips.precedence import prioritised_step
 from nao_kin.ik.tips.tree_aim import Aim, aims_of, apart, stacked, unreachable_last
 from nao_kin.ik.tips.tree_problem import TreeRun, TreeTrace
@@ -137,13 +138,13 @@ class _Search:
             merits = [max(seen[tip].merit(self.tolerances) for tip in level) for level in levels]
             merit = max(merits)
             reached = reached or merit <= REACHED
-            if reached and (merit <= POLISHED or merit >= previous):
+            if reached and is_polished(merit, previous):
                 return Status.SOLVED
             previous, waited = merit, waited + 1
             for k, level_merit in enumerate(merits):
-                if max(level_merit, POLISHED) < 0.5 * halved[k]:
+                if improved(max(level_merit, POLISHED), halved[k]):
                     halved[k], waited = max(level_merit, POLISHED), 0
-            if waited >= (min(self.budget.patience, PATIENCE_ONCE_REACHED) if reached else self.budget.patience):
+            if gives_up(waited, self.budget.patience, reached):
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
@@ -211,8 +212,8 @@ class _Search:
         self.iterations += 1
         tasks = [stacked(self.aims[tip].task(q, seen[tip]) for tip in level) for level in levels]
         step = prioritised_step(tasks, rule, q <= self.tree.lower + margin, q >= self.tree.upper - margin)
-        largest = float(np.abs(step).max())
-        return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
+        bounded: Floats = step * step_scale(float(np.abs(step).max()), self.budget.largest_step)
+        return bounded
 
     def _look(self, q: Floats) -> dict[str, Seen]:
         """Where all tips are; remembers q if it is the best so far."""
