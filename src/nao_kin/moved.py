@@ -53,7 +53,7 @@ MOVED: Final = {
     "motion.torso": "motion.nao.torso",
     "motion.transports": "motion.loop.transports",
     "motion.tuning": "motion.loop.tuning",
-    "motion.walk_command": "motion.hexapod.walk_command",
+    "motion.walk_command": "motion.hexapod.walk_request",
     "motion.walk_plan": "motion.hexapod.walk_plan",
     "motors": "robot.motors",
     "trajectory.file_fields": "trajectory.files.columns",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nao_kin.chain import Chain, into_limits, random_configurations
-from nao_kin.ik.aim import Aim
+from nao_kin.ik.aim import SweepGoal
 from nao_kin.ik.geometric.ccd import squared_error
 from nao_kin.ik.geometric.sweep import CCD, FABRIK, FOLLOW_THE_LEADER, sweep, sweep_memory
 from nao_kin.ik.starts import make_starts
@@ -52,14 +52,14 @@ class Arm:
     def swept(self, method: str, goal: np.ndarray, q: np.ndarray, kind: int = POSITION) -> np.ndarray:
         q, memory = q.copy(), np.full(sweep_memory(self.joints), np.nan)  # so that nothing is read before it is written
         axes, tip = self.placed(q)
-        sweep(METHODS[method], self.flat, Aim(kind, goal, self.closeness), At(q, axes, tip), memory)
+        sweep(METHODS[method], self.flat, SweepGoal(kind, goal, self.closeness), At(q, axes, tip), memory)
         again = self.placed(q)
         np.testing.assert_array_equal(axes, again[0])
         np.testing.assert_array_equal(tip, again[1])
         return q
 
     def error(self, goal: np.ndarray, q: np.ndarray, kind: int = POSITION) -> float:
-        return squared_error(Aim(kind, goal, self.closeness), self.placed(q)[1])
+        return squared_error(SweepGoal(kind, goal, self.closeness), self.placed(q)[1])
 
     def missing(self, goal: np.ndarray, q: np.ndarray) -> float:
         return float(np.linalg.norm(self.placed(q)[1][9:] - goal[:3, 3]))

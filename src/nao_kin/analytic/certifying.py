@@ -128,7 +128,7 @@ class Certificate(NamedTuple):
         return Certificate(q[chunk], codes[chunk], branches[chunk], position[chunk], rotation[chunk])
 
 
-class Asked(NamedTuple):
+class Wish(NamedTuple):
     """What is wanted of every goal, inside compiled code.
 
     Attributes:
@@ -194,7 +194,7 @@ def certify(
     Q = np.empty((int(ends[-1]) if len(ends) else 0, len(written.template)))
     _gather(written, ends, ranges, Q)
     allowed = np.array([tolerances.position, tolerances.rotation, tolerances.limits])
-    _keep(Asked(kind, counted, allowed), goals, written, ends, Placed(Q, poses(path, Q)), ranges, certificate)
+    _keep(Wish(kind, counted, allowed), goals, written, ends, Placed(Q, poses(path, Q)), ranges, certificate)
     reached = certificate.codes != ABSENT
     ended = np.full(certificate.codes.shape, SOLVED)
     certificate.codes[reached] = verdicts(ended, reached, certificate.codes == _INSIDE)[reached]
@@ -223,7 +223,7 @@ def _gather(written: Written, ends: NDArray[np.int64], ranges: Ranges, Q: Floats
 
 @parallel_jit
 def _keep(
-    asked: Asked,
+    asked: Wish,
     goals: Floats,
     written: Written,
     ends: NDArray[np.int64],
@@ -240,7 +240,7 @@ def _keep(
 
 @leaf_jit
 def _measure(
-    asked: Asked,
+    asked: Wish,
     goal: Floats,
     i: int,
     first: int,

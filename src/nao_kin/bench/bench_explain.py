@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from nao_kin.crosscheck import Alternative, Explanation
     from nao_kin.dh.dh_chain import DHChain
 
-__all__ = ["Verdict", "explain", "verdict_of"]
+__all__ = ["ExplanationVerdict", "explain", "verdict_of"]
 
 _FRESH = 32  # configurations at which every reported set is measured again
 _SAME = 1e-7  # [m, rad] of numbers of two tables
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ExplanationVerdict:
     """What an explanation of a planted error is worth.
 
     Attributes:
@@ -61,7 +61,7 @@ def explain(
     from nao_kin.output import progress
 
     machine, (chains, notes) = Machine(), _chains()
-    sheets, bounds = list[Sheet](), list[Goal]()
+    sheets, bounds = list[Sheet](), list[Promise]()
     for errors, count, least in ((1, singles, 95.0), (2, doubles, 80.0)):
         if count == 0:
             continue
@@ -71,17 +71,19 @@ def explain(
         sheets.append(_sheet(word, verdicts))
         asked = [v for v in verdicts if not v.fewer]
         bounds += [
-            Goal(f"{word}: explained %", 100.0 * sum(v.explained for v in verdicts) / count, least),
-            Goal(f"{word}: sets that the poses refute", float(sum(v.refuted for v in verdicts)), 0.0, at_least=False),
-            Goal(f"{word}: planted edits named %", 100.0 * sum(v.named for v in asked) / max(len(asked), 1), least),
+            Promise(f"{word}: explained %", 100.0 * sum(v.explained for v in verdicts) / count, least),
+            Promise(
+                f"{word}: sets that the poses refute", float(sum(v.refuted for v in verdicts)), 0.0, at_least=False
+            ),
+            Promise(f"{word}: planted edits named %", 100.0 * sum(v.named for v in asked) / max(len(asked), 1), least),
         ]
         if errors == 1:
-            bounds.append(Goal("one error: slowest [s]", max(v.seconds for v in verdicts), 0.5, at_least=False))
+            bounds.append(Promise("one error: slowest [s]", max(v.seconds for v in verdicts), 0.5, at_least=False))
     notes.append("Named is asked of tables that no smaller set of edits explains.")
     conclude(machine, sheets, bounds, notes, format, goals)
 
 
-def verdict_of(planted: Planted) -> Verdict:
+def verdict_of(planted: Planted) -> ExplanationVerdict:
     """Explains a planted table and judges what is said by the poses of both chains."""
     import nao_kin as nk
 
@@ -90,7 +92,7 @@ def verdict_of(planted: Planted) -> Verdict:
     explanation = found.explanation
     seconds = time.perf_counter() - start
     sets = explanation.alternatives
-    return Verdict(
+    return ExplanationVerdict(
         kinds=planted.kinds,
         explained=bool(sets) and explanation.exact,
         refuted=_refuted(explanation, planted.chain),
@@ -151,7 +153,7 @@ def _chains() -> tuple[list[Chain], list[str]]:
     return chains, notes
 
 
-def _sheet(word: str, verdicts: Sequence[Verdict]) -> Sheet:
+def _sheet(word: str, verdicts: Sequence[ExplanationVerdict]) -> Sheet:
     import numpy as np
 
     rows = []

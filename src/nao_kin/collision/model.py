@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from nao_kin.arrays import Floats, frozen
 from nao_kin.chain import random_configurations
-from nao_kin.collision.shapes import Body, Plane, link_bodies, plane_body
+from nao_kin.collision.shapes import CollisionBody, Plane, link_bodies, plane_body
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.robot.motors import Motors
 from nao_kin.table import Column, Table
@@ -98,7 +98,7 @@ class CollisionModel:
         self.motors = Motors.of(robot)
         bodies, self.notes = link_bodies(robot)
         _check_names(self.planes, robot)
-        self.bodies: tuple[Body, ...] = (*bodies, *map(plane_body, self.planes))
+        self.bodies: tuple[CollisionBody, ...] = (*bodies, *map(plane_body, self.planes))
         pairs, excluded = self._sorted_pairs(ignored)
         self._load(pairs)
         always = self._always_touching()
@@ -247,7 +247,7 @@ def _neighbours(model: pin.Model, shaped: set[int]) -> set[frozenset[int]]:
     return {frozenset({joint, nearest[joint]}) for joint in shaped if joint}
 
 
-def pair_levers(motors: Motors, bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> Floats:
+def pair_levers(motors: Motors, bodies: Sequence[CollisionBody], pairs: Sequence[tuple[int, int]]) -> Floats:
     """Levers (P, n) of every pair for every motor [m/rad, or m/m for prismatic joints].
 
     A motor that moves neither body against the other has lever 0.
@@ -263,7 +263,7 @@ def pair_levers(motors: Motors, bodies: Sequence[Body], pairs: Sequence[tuple[in
     return levers
 
 
-def _levers(motors: Motors, body: Body) -> dict[int, float]:
+def _levers(motors: Motors, body: CollisionBody) -> dict[int, float]:
     """For each moving joint above a body, by its place in file order, how far from its axis the body may ever be."""
     model, names, found, distance, joint = motors.robot.model, motors.robot.joint_names, {}, body.reach, body.joint
     while joint:

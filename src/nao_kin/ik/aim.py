@@ -21,7 +21,7 @@ __all__ = [
     "POINTING",
     "POSE",
     "POSITION",
-    "Aim",
+    "SweepGoal",
     "goal_violation",
     "raw_error",
     "rotation_vector",
@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 
-class Aim(NamedTuple):
+class SweepGoal(NamedTuple):
     """What the geometric methods head for.
 
     Attributes:

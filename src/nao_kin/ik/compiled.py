@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from nao_kin.ik.reference_loop import Budget
     from nao_kin.tolerances import Tolerances
 
-__all__ = ["KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
+__all__ = ["KINDS", "ChainTables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Tables:
+class ChainTables:
     """A chain as the compiled loop reads it; see `nao_kin.ik.compiled_loop.solve_one` for the arrays.
 
     Attributes:
@@ -62,10 +62,10 @@ class Tables:
     work_size: int
 
 
-_TABLES: weakref.WeakKeyDictionary[Chain, dict[int, Tables]] = weakref.WeakKeyDictionary()
+_TABLES: weakref.WeakKeyDictionary[Chain, dict[int, ChainTables]] = weakref.WeakKeyDictionary()
 
 
-def tables_of(chain: Chain, seed: int = 0) -> Tables:
+def tables_of(chain: Chain, seed: int = 0) -> ChainTables:
     """The tables of a chain, made once a seed; the seed decides the stored starts."""
     try:
         return _TABLES[chain][seed]
@@ -77,11 +77,11 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
         return tables
 
 
-def _tables(chain: Chain, seed: int) -> Tables:
+def _tables(chain: Chain, seed: int) -> ChainTables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
     joints, size = packed_joints(chain.joint_path), loop.OUTCOME + len(chain.joints)
     limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
-    return Tables(
+    return ChainTables(
         joints=joints,
         limits=limits,
         coupled=coupled,
@@ -94,7 +94,7 @@ def _tables(chain: Chain, seed: int) -> Tables:
 
 
 def settings_of(
-    tables: Tables,
+    tables: ChainTables,
     kind: int,
     rule: int,
     budget: Budget,
@@ -141,7 +141,7 @@ def trace_rows(outcome: Floats, n: int) -> Floats:
     return np.empty((int(outcome[loop.ITERATIONS] + outcome[loop.STARTS]), n + 3))
 
 
-def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
+def solve_goal(tables: ChainTables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
     """Solves for one target; returns the outcome, see `compiled_loop`. Nothing passed in is changed but `trace`.
 
     Args:
@@ -163,14 +163,14 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
     return outcome
 
 
-def _memory(tables: Tables, settings: Floats) -> Floats | None:
+def _memory(tables: ChainTables, settings: Floats) -> Floats | None:
     """What methods other than the default need besides."""
     if settings[loop.RULE] == LEVENBERG_MARQUARDT:
         return None
     return np.empty(loop.memory_size(tables.joints, tables.limits.shape[1]))
 
 
-def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
+def solve_goals(tables: ChainTables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
     """Solves for many targets (N, 4, 4) on all cores, from q0 (N, n), or (1, n) for all; outcomes in rows.
 
     An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, Aim, goal_violation, raw_error, shape_rows
+from nao_kin.ik.aim import ORIENTATION, POINTING, POSITION, SweepGoal, goal_violation, raw_error, shape_rows
 from nao_kin.ik.geometric.sweep import CCD, sweep, sweep_memory
 from nao_kin.ik.orientation import recast_rows
 from nao_kin.ik.problem import Status
@@ -317,7 +317,7 @@ def _descend(
             hold(limits, q, e, J)
             levenberg_marquardt(J, e, settings[GAINS:], A, y, step)
         elif settings[RULE] >= CCD:
-            sweep(int(settings[RULE]), arm, Aim(kind, goal, settings[CLOSENESS]), At(q, axes, tip), memory)
+            sweep(int(settings[RULE]), arm, SweepGoal(kind, goal, settings[CLOSENESS]), At(q, axes, tip), memory)
             outcome[ITERATIONS] += 1.0
             continue
         else:

@@ -213,7 +213,7 @@ class _Search:
         axes, tip, swept = np.empty((len(joints) - 1, 6)), np.empty(12), q.copy()
         place(joints, swept, axes, tip)
         memory = np.empty(sweep_memory(joints))
-        wanted = aim.Aim(self.kind, self.goal, self.closeness)
+        wanted = aim.SweepGoal(self.kind, self.goal, self.closeness)
         sweep(self.method.rule, Arm(joints, limits, coupled), wanted, At(swept, axes, tip), memory)
         return swept
 

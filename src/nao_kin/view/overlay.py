@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.view.meshes import Mesh
 from nao_kin.view.robot_scene import robot_scene
-from nao_kin.view.scene import Drive, Node, Panel, Rod, Scene, SceneChain, SceneJoint
+from nao_kin.view.scene import Node, NodeDrive, Panel, Rod, Scene, SceneChain, SceneJoint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -173,7 +173,7 @@ def chain_figure(
         placement = np.eye(4)
         placement[:3, :3], placement[:3, 3] = path.rotations[k], path.translations[k]
         column, slides = joint_names[int(path.columns[k])], bool(path.prismatic[k])
-        drive = Drive(column, (0.0, 0.0, 1.0), slides, float(path.multipliers[k]), float(path.offsets[k]))
+        drive = NodeDrive(column, (0.0, 0.0, 1.0), slides, float(path.multipliers[k]), float(path.offsets[k]))
         nodes.append(Node("", parent, None, placement, drive=drive))
         parent = first + len(nodes) - 1
         T_base_here = T_base_here @ placement @ _moved(drive, slides)
@@ -194,7 +194,7 @@ def rod_radius(chain: Chain, q: Floats) -> float:
     return ROD * max(1e-3, float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))
 
 
-def _moved(drive: Drive, slides: bool) -> Floats:
+def _moved(drive: NodeDrive, slides: bool) -> Floats:
     """What the drive adds where its joint is at 0."""
     moved = np.eye(4)
     c, s = np.cos(drive.offset), np.sin(drive.offset)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from nao_kin.se3 import from_xyz_rpy
 from nao_kin.view.meshes import Triangulator
-from nao_kin.view.scene import Drive, Leg, Node, Scene, SceneChain, SceneJoint
+from nao_kin.view.scene import Node, NodeDrive, Scene, SceneChain, SceneJoint, SceneLeg
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -73,7 +73,7 @@ def _node(
     origin = from_xyz_rpy((0, 0, 0), (0, 0, 0)) if joint is None else from_xyz_rpy(joint.origin.xyz, joint.origin.rpy)
     drive = None
     if joint is not None and joint.kind != "fixed":
-        drive = Drive(joint.name, joint.axis, joint.kind == "prismatic")
+        drive = NodeDrive(joint.name, joint.axis, joint.kind == "prismatic")
     return Node(name, parent, joint.name if joint else None, origin.homogeneous, meshes, collisions, collides, drive)
 
 
@@ -182,7 +182,7 @@ def main_tip(robot: Robot) -> str:
     return [link.name for link in robot.document.links if depth[link.name] == most][-1]
 
 
-def legs_of(robot: Robot, index: Mapping[str, int]) -> tuple[Leg, ...]:
+def legs_of(robot: Robot, index: Mapping[str, int]) -> tuple[SceneLeg, ...]:
     """The legs of a machine that can move its body over its feet: all its chains, if all are legs of three joints.
 
     Args:
@@ -198,7 +198,7 @@ def legs_of(robot: Robot, index: Mapping[str, int]) -> tuple[Leg, ...]:
     return tuple(legs) if len(legs) == len(chains) else ()
 
 
-def _leg(name: str, chain: UrdfChain, index: Mapping[str, int]) -> Leg | None:
+def _leg(name: str, chain: UrdfChain, index: Mapping[str, int]) -> SceneLeg | None:
     from nao_kin.analytic.form import Mismatch
     from nao_kin.analytic.hexapod.hexapod_leg import recognise
 
@@ -207,4 +207,4 @@ def _leg(name: str, chain: UrdfChain, index: Mapping[str, int]) -> Leg | None:
         return None
     title = name.removeprefix("leg_").upper()
     numbers = tuple(float(number) for number in geometry.parameters)
-    return Leg(title, index[chain.base], index[chain.tip], chain.joint_names, numbers)
+    return SceneLeg(title, index[chain.base], index[chain.tip], chain.joint_names, numbers)

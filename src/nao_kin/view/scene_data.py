@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.urdf.elements import Colour
-    from nao_kin.view.scene import Goal, Leg, Motion, NamedPosture, Node, Rod, Scene, SceneJoint
+    from nao_kin.view.scene import NamedPosture, Node, Rod, Scene, SceneGoal, SceneJoint, SceneLeg, SceneMotion
 
 __all__ = ["scene_json"]
 
@@ -95,7 +95,7 @@ def _posture(posture: NamedPosture, values: Mapping[str, float]) -> dict[str, An
     }
 
 
-def _goal(goal: Goal) -> dict[str, Any]:
+def _goal(goal: SceneGoal) -> dict[str, Any]:
     return {
         "chain": goal.chain,
         "kind": goal.kind,
@@ -106,7 +106,7 @@ def _goal(goal: Goal) -> dict[str, Any]:
     }
 
 
-def _motion(motion: Motion, number: Mapping[str, int]) -> dict[str, Any]:
+def _motion(motion: SceneMotion, number: Mapping[str, int]) -> dict[str, Any]:
     return {
         "name": motion.name,
         "joints": [number[name] for name in motion.joints],
@@ -130,7 +130,7 @@ def _rod(rod: Rod) -> dict[str, Any]:
     }
 
 
-def _leg(leg: Leg, number: Mapping[str, int]) -> dict[str, Any]:
+def _leg(leg: SceneLeg, number: Mapping[str, int]) -> dict[str, Any]:
     return {
         "name": leg.name,
         "base": leg.base,

@@ -214,7 +214,7 @@ class _Found:
 
 
 def _solved(chain: Chain, parameters: Floats, p_body: Floats, start: Floats | None, tolerances: Tolerances) -> _Found:
-    from nao_kin.analytic.hexapod.hexapod_leg_kernel import misses_by_many
+    from nao_kin.analytic.hexapod.hexapod_leg import misses_by_many
 
     found, exists = _branches(chain, parameters, p_body, 0.0)
     Q, label = found[:, :, :3], found[:, :, 3]
@@ -247,7 +247,7 @@ def _nearest(chain: Chain, parameters: Floats, p_body: Floats) -> Floats:
 
 def _branches(chain: Chain, parameters: Floats, p_body: Floats, slack: float) -> tuple[Floats, NDArray[np.bool_]]:
     """Rows of the kernel (N, 4, 5), each joint in the winding nearest to the middle of its range, and which exist."""
-    from nao_kin.analytic.hexapod.hexapod_leg_kernel import BRANCHES, solve_many
+    from nao_kin.analytic.hexapod.hexapod_leg import BRANCHES, solve_many
 
     found, counts = np.zeros((len(p_body), BRANCHES, 5)), np.zeros(len(p_body), dtype=np.int64)
     solve_many(parameters, 1, _goals(p_body), np.zeros((1, 0)), slack, found, counts)

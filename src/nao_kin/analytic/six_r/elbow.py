@@ -62,7 +62,7 @@ _TURNS: Final = 256  # where any first joint will do, turns tried on each side o
 _ON_AXIS: Final = 1e-9  # sine: a direction this near to an axis says nothing about the turn round it
 
 
-class Task(NamedTuple):
+class Asked(NamedTuple):
     """A goal for an arm, inside compiled code.
 
     Attributes:
@@ -133,7 +133,7 @@ def _solve(arm: Floats, goal: Floats, slack: float, rows: Floats, parallel: bool
     if not dot(w, w) < FAR:
         return 0
     count, c, s, other_c, other_s = shoulder(arm, w, slack)
-    task = Task(arm, G, slack, rows)
+    task = Asked(arm, G, slack, rows)
     if count < 0:
         return _any_shoulder(task, w, parallel)
     if count == 0:
@@ -146,7 +146,7 @@ def _solve(arm: Floats, goal: Floats, slack: float, rows: Floats, parallel: bool
 
 
 @jit
-def _any_shoulder(task: Task, w: Three, parallel: bool) -> int:
+def _any_shoulder(task: Asked, w: Three, parallel: bool) -> int:
     """The branches of one first joint where every value keeps the plane: of those tried, the nearest to its middle."""
     for i in range(2 * _TURNS):
         turn = math.pi * ((i + 1) // 2) / _TURNS * (1.0 if i % 2 else -1.0)
@@ -158,7 +158,7 @@ def _any_shoulder(task: Task, w: Three, parallel: bool) -> int:
 
 
 @jit
-def _at(task: Task, w: Three, first: Two, label: int, free: int, count: int, parallel: bool) -> int:
+def _at(task: Asked, w: Three, first: Two, label: int, free: int, count: int, parallel: bool) -> int:
     """Writes the branches of one first joint, given by cosine and sine of −q1; the number of rows then."""
     arm, G, (c, s) = task.arm, task.G, first
     k1, h = axis(arm, 0), axis(arm, 1)
@@ -185,7 +185,7 @@ def _at(task: Task, w: Three, first: Two, label: int, free: int, count: int, par
 
 
 @jit
-def _plane(task: Task, branch: Branch, fifth: Two, q6: float, count: int) -> int:
+def _plane(task: Asked, branch: Branch, fifth: Two, q6: float, count: int) -> int:
     """Writes the elbow's branches of three parallel axes whose other joints are known: q5 by cosine and sine, and q6.
 
     Returns how many rows are written then.
@@ -213,7 +213,7 @@ def _whole_turn(arm: Floats, G: Placed, first: Two, fifth: Two, q6: float) -> fl
 
 
 @jit
-def _any_wrist(task: Task, branch: Branch, fifth: Two, count: int) -> int:
+def _any_wrist(task: Asked, branch: Branch, fifth: Two, count: int) -> int:
     """Writes the elbow's branches of one last joint where its axis is parallel to the three others.
 
     The sum of the four joints is given. Of the sums of three that let the links reach, whose cosine about the direction
@@ -237,7 +237,7 @@ def _any_wrist(task: Task, branch: Branch, fifth: Two, count: int) -> int:
 
 
 @jit
-def _spherical(task: Task, branch: Branch, count: int) -> int:
+def _spherical(task: Asked, branch: Branch, count: int) -> int:
     """Writes the branches of one first joint of a spherical wrist: elbow, then the wrist; the number of rows then."""
     number, q2, q3, other2, other3, sine, bits = _elbow(task.arm, branch.seen[0], branch.seen[1], task.slack)
     for bent in range(number):
@@ -249,7 +249,7 @@ def _spherical(task: Task, branch: Branch, count: int) -> int:
 
 
 @jit
-def _wrist(task: Task, branch: Branch, q2: float, q3: float, count: int) -> int:
+def _wrist(task: Asked, branch: Branch, q2: float, q3: float, count: int) -> int:
     arm, first, start = task.arm, branch.first, count
     k4, k5, k6 = axis(arm, 3), axis(arm, 4), axis(arm, 5)
     s, c = sine_cosine(q2 + q3)

@@ -20,7 +20,7 @@ from nao_kin.kernels.motion import COLUMN, MULTIPLIER, SLIDES, place
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.ik.aim import Aim
+    from nao_kin.ik.aim import SweepGoal
     from nao_kin.kernels.motion import Arm, At
 
 __all__ = ["ccd_pass", "move_column", "squared_error"]
@@ -33,7 +33,7 @@ _TRIALS: Final = 40
 
 
 @leaf_jit
-def squared_error(aim: Aim, tip: Floats) -> float:
+def squared_error(aim: SweepGoal, tip: Floats) -> float:
     """The error that the geometric methods bring down.
 
     Args:
@@ -56,12 +56,12 @@ def squared_error(aim: Aim, tip: Floats) -> float:
 
 
 @leaf_jit
-def _weight(aim: Aim) -> float:
+def _weight(aim: SweepGoal) -> float:
     return 1.0 if aim.kind == POSITION else aim.closeness
 
 
 @leaf_jit
-def ccd_pass(arm: Arm, aim: Aim, at: At, memory: Floats) -> None:
+def ccd_pass(arm: Arm, aim: SweepGoal, at: At, memory: Floats) -> None:
     """Moves every column once, from the tip to the base; axes and tip belong to the new q afterwards.
 
     Args:
@@ -95,7 +95,7 @@ def _alone(joints: Floats, k: int) -> bool:
 
 
 @leaf_jit
-def move_column(arm: Arm, aim: Aim, k: int, at: At, memory: Floats) -> None:
+def move_column(arm: Arm, aim: SweepGoal, k: int, at: At, memory: Floats) -> None:
     """Moves the column of joint k so that the error falls or, where it cannot, stays.
 
     A column with one joint goes to the exact optimum inside its range. One that moves several joints, or that decides
@@ -115,7 +115,7 @@ def move_column(arm: Arm, aim: Aim, k: int, at: At, memory: Floats) -> None:
 
 
 @leaf_jit
-def _best_move(joints: Floats, aim: Aim, k: int, value: float, lower: float, upper: float, at: At) -> float:
+def _best_move(joints: Floats, aim: SweepGoal, k: int, value: float, lower: float, upper: float, at: At) -> float:
     """By how much joint k [rad or m] should move, its column standing at `value` in [lower, upper]."""
     factor = joints[k, MULTIPLIER]
     low, high = factor * (lower - value), factor * (upper - value)
@@ -133,7 +133,7 @@ def _best_move(joints: Floats, aim: Aim, k: int, value: float, lower: float, upp
 
 
 @leaf_jit
-def _wave(aim: Aim, axis: Floats, tip: Floats) -> tuple[float, float]:
+def _wave(aim: SweepGoal, axis: Floats, tip: Floats) -> tuple[float, float]:
     """A and B such that turning about an axis (6,) by δ makes the error a constant less A cos δ + B sin δ."""
     kind, goal, ax, ay, az = aim.kind, aim.goal, axis[0], axis[1], axis[2]
     A, B = 0.0, 0.0
@@ -172,7 +172,7 @@ def _carry_tip(slides: bool, delta: float, axis: Floats, tip: Floats) -> None:
 
 
 @leaf_jit
-def _move_by_trial(arm: Arm, aim: Aim, k: int, at: At, memory: Floats) -> None:
+def _move_by_trial(arm: Arm, aim: SweepGoal, k: int, at: At, memory: Floats) -> None:
     """A Gauss–Newton step of one column, halved until the true error is lower, else none.
 
     A column whose range hangs on this one is moved along into its new range, and the error is measured after that.
@@ -199,7 +199,7 @@ def _move_by_trial(arm: Arm, aim: Aim, k: int, at: At, memory: Floats) -> None:
 
 
 @leaf_jit
-def _newton_step(joints: Floats, aim: Aim, column: int, at: At) -> float:
+def _newton_step(joints: Floats, aim: SweepGoal, column: int, at: At) -> float:
     """Slope over Gauss–Newton curvature of half the error, by one column; 0 where the column does not count."""
     kind, goal, axes, tip = aim.kind, aim.goal, at.axes, at.tip
     slope, vx, vy, vz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.ik.aim import POSITION, Aim
+from nao_kin.ik.aim import POSITION, SweepGoal
 from nao_kin.ik.geometric.best_turn import best_turn, point_wave
 from nao_kin.ik.geometric.ccd import squared_error
 from nao_kin.ik.geometric.fabrik import CYCLES, STILL, carry, hinge_memory, leave_line, outward_pass, want_points
@@ -131,7 +131,7 @@ def _branches(
 
 def _missing(branches: Sequence[_Branch]) -> float:
     """Sum of the squared distances of the tips to their targets [m²]."""
-    return sum(squared_error(Aim(POSITION, branch.goal, 1.0), branch.tip) for branch in branches)
+    return sum(squared_error(SweepGoal(POSITION, branch.goal, 1.0), branch.tip) for branch in branches)
 
 
 def tree_pass(

@@ -21,7 +21,7 @@ from nao_kin.kernels.motion import place
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.ik.aim import Aim
+    from nao_kin.ik.aim import SweepGoal
     from nao_kin.kernels.joint_path import JointPath
     from nao_kin.kernels.motion import Arm, At
 
@@ -58,7 +58,7 @@ def refusal(path: JointPath) -> str:
 
 
 @leaf_jit
-def sweep(method: int, arm: Arm, aim: Aim, at: At, memory: Floats) -> None:
+def sweep(method: int, arm: Arm, aim: SweepGoal, at: At, memory: Floats) -> None:
     """Two passes and a step on: moves to a new configuration inside its limits, coupled ones included.
 
     Args:
@@ -78,7 +78,7 @@ def sweep(method: int, arm: Arm, aim: Aim, at: At, memory: Floats) -> None:
 
 
 @leaf_jit
-def _improve(method: int, arm: Arm, aim: Aim, start: Floats, at: At, memory: Floats) -> None:
+def _improve(method: int, arm: Arm, aim: SweepGoal, start: Floats, at: At, memory: Floats) -> None:
     """One pass of the method, or of CCD where that does not bring the tip closer; `start` (n,) receives q before it."""
     q = at.q
     before = squared_error(aim, at.tip)
@@ -96,7 +96,7 @@ def _improve(method: int, arm: Arm, aim: Aim, start: Floats, at: At, memory: Flo
 
 
 @leaf_jit
-def _go_on(arm: Arm, aim: Aim, start: Floats, at: At, memory: Floats) -> None:
+def _go_on(arm: Arm, aim: SweepGoal, start: Floats, at: At, memory: Floats) -> None:
     """Goes on in the direction from `start` to q, each time twice as far, while that brings the error down.
 
     After a pass, what is left of the error lies mostly along the direction in which the method is slowest; so it is the

@@ -22,8 +22,8 @@ from nao_kin.arrays import frozen
 from nao_kin.errors import InvalidInputError
 from nao_kin.motion.balance import centres_of_mass, support_margins
 from nao_kin.motion.feasible import Attempted, Refusal, refusal_where, refusals, said
-from nao_kin.motion.hexapod.walk_command import WalkCommand
 from nao_kin.motion.hexapod.walk_plan import WalkPlan, hexapod_legs
+from nao_kin.motion.hexapod.walk_request import WalkCommand
 from nao_kin.se3 import translation
 from nao_kin.table import Column, Table
 from nao_kin.tolerances import TOLERANCES, Tolerances

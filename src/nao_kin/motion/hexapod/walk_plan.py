@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import Chain
-    from nao_kin.motion.hexapod.walk_command import WalkCommand
+    from nao_kin.motion.hexapod.walk_request import WalkCommand
     from nao_kin.robot.robot import Robot
 
 __all__ = ["WalkPlan", "hexapod_legs"]

@@ -26,9 +26,8 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.analytic.form import Mismatch
-from nao_kin.analytic.nao.leg_kernel import ANY_YAW, BRANCHES, solve_with_yaw
 from nao_kin.analytic.nao.leg_yaw import Hinges, hinges, nearest_orientation
-from nao_kin.analytic.nao.nao_leg import LABELS, recognise
+from nao_kin.analytic.nao.nao_leg import ANY_YAW, BRANCHES, LABELS, recognise, solve_with_yaw
 from nao_kin.arrays import vector
 from nao_kin.chain import into_limits, outside_limits
 from nao_kin.errors import InvalidInputError, UnknownNameError

@@ -16,7 +16,16 @@ if TYPE_CHECKING:
 
     from nao_kin.chain import MovingKind
 
-__all__ = ["FORMAT", "Place", "columns_of", "joint_of_column", "joint_of_record", "number_of", "record_of", "repeated"]
+__all__ = [
+    "FORMAT",
+    "FilePlace",
+    "columns_of",
+    "joint_of_column",
+    "joint_of_record",
+    "number_of",
+    "record_of",
+    "repeated",
+]
 
 FORMAT: Final = "nao_kin trajectory, format 1"
 """How a file says what it is."""
@@ -30,7 +39,7 @@ _NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FilePlace:
     """A file and a line of it, to name in messages.
 
     Attributes:
@@ -51,7 +60,7 @@ def columns_of(joints: tuple[ChainJoint, ...]) -> list[str]:
     return ["time [s]", *(f"{joint.name} [{_UNITS[joint.kind]}]" for joint in joints)]
 
 
-def joint_of_column(heading: str, place: Place, column: int) -> ChainJoint:
+def joint_of_column(heading: str, place: FilePlace, column: int) -> ChainJoint:
     """A joint from a heading alone: its name, its kind by its unit, no limits."""
     found = re.fullmatch(r"(.+?) ?\[([^\[\]]*)\]", heading.strip())
     if found is None:
@@ -66,7 +75,7 @@ def record_of(joint: ChainJoint) -> dict[str, Any]:
     return {"name": joint.name, "kind": joint.kind, "unit": _UNITS[joint.kind], **kept}
 
 
-def joint_of_record(record: object, place: Place) -> ChainJoint:
+def joint_of_record(record: object, place: FilePlace) -> ChainJoint:
     """A joint from its record."""
     if not isinstance(record, dict):
         raise place.refused(f"joint: expected a record with a name and a kind, got {_short(record)}.")
@@ -98,7 +107,7 @@ def repeated(names: Sequence[str]) -> str:
     return ""
 
 
-def number_of(value: object, place: Place, what: str, column: int | None = None, *, written: bool = False) -> float:
+def number_of(value: object, place: FilePlace, what: str, column: int | None = None, *, written: bool = False) -> float:
     """A finite number: a JSON value, or, if `written`, the text of one."""
     number = math.nan
     if isinstance(value, str):
@@ -113,7 +122,7 @@ def number_of(value: object, place: Place, what: str, column: int | None = None,
     return number
 
 
-def _kind_of(unit: str, name: str, place: Place, column: int) -> Literal["revolute", "prismatic"]:
+def _kind_of(unit: str, name: str, place: FilePlace, column: int) -> Literal["revolute", "prismatic"]:
     if unit not in _KINDS:
         hint = "Convert degrees to radians first." if unit.lower() in ("deg", "°", "degrees") else ""
         raise place.refused(f"{name}: expected the unit [rad] or [m], got [{_short(unit)[1:-1]}].", column, hint)

@@ -12,7 +12,7 @@ from nao_kin.errors import InvalidInputError, TrajectoryFileError, near_matches
 from nao_kin.replacing import replace_file
 from nao_kin.trajectory.files.columns import (
     FORMAT,
-    Place,
+    FilePlace,
     columns_of,
     joint_of_column,
     joint_of_record,
@@ -161,7 +161,7 @@ def parse_json(text: str, path: str) -> Trajectory:
     Raises:
         TrajectoryFileError: Malformed; carries the line and, within a sample, the column.
     """
-    data, place = _loaded(text, path), Place(path)
+    data, place = _loaded(text, path), FilePlace(path)
     for key in data:
         if key not in _KEYS:
             near = near_matches(key, _KEYS)
@@ -188,15 +188,15 @@ def _loaded(text: str, path: str) -> dict[str, Any]:
     try:
         data = json.loads(text, object_pairs_hook=_without_repeats)
     except json.JSONDecodeError as error:
-        raise Place(path, error.lineno).refused(f"not JSON: {error.msg} at character {error.colno}.") from None
+        raise FilePlace(path, error.lineno).refused(f"not JSON: {error.msg} at character {error.colno}.") from None
     except _RepeatedKeyError as error:
-        raise Place(path).refused(f"the key {str(error)[:60]!r} occurs twice.") from None
+        raise FilePlace(path).refused(f"the key {str(error)[:60]!r} occurs twice.") from None
     except RecursionError:
-        raise Place(path).refused("nested too deeply to be a trajectory.") from None
+        raise FilePlace(path).refused("nested too deeply to be a trajectory.") from None
     except ValueError:  # integers of thousands of digits
-        raise Place(path).refused("a number has too many digits.") from None
+        raise FilePlace(path).refused("a number has too many digits.") from None
     if not isinstance(data, dict):
-        raise Place(path).refused("expected a JSON object.")
+        raise FilePlace(path).refused("expected a JSON object.")
     return data
 
 
@@ -242,15 +242,15 @@ class _Samples:
     def named(self, sample: list[Any]) -> list[tuple[Any, str]]:
         return list(zip(sample, self.columns, strict=True))
 
-    def place(self, index: int) -> Place:
+    def place(self, index: int) -> FilePlace:
         """Where the sample of that number begins."""
         start = re.search(r'"samples"\s*:\s*\[', self.text)
         if start is None:  # written with escapes
-            return Place(self.path)
+            return FilePlace(self.path)
         decoder, at = json.JSONDecoder(), start.end()
         for _ in range(index):
             at = decoder.raw_decode(self.text, self._next(at))[1]
-        return Place(self.path, self.text.count("\n", 0, self._next(at)) + 1)
+        return FilePlace(self.path, self.text.count("\n", 0, self._next(at)) + 1)
 
     def _next(self, at: int) -> int:
         """Where the next value begins, after blanks and a comma."""
@@ -295,11 +295,11 @@ def parse_rows(text: str, path: str, form: RowForm) -> Trajectory:
         row = reader.sample(number, line)
         if samples and row[0] <= samples[-1][0]:
             reason = f"time: expected more than {samples[-1][0]!r} s, the time of line {last}, got {row[0]!r} s."
-            raise Place(path, number).refused(reason, 1)
+            raise FilePlace(path, number).refused(reason, 1)
         samples.append(row)
         last = number
     if not samples:
-        raise Place(path).refused("expected at least one sample, got none.")
+        raise FilePlace(path).refused("expected at least one sample, got none.")
     return Trajectory(reader.joints, [row[0] for row in samples], [row[1:] for row in samples], reader.name)
 
 
@@ -316,7 +316,7 @@ class _Reader:
         """Reads the head, and gives the rows below."""
         records: dict[str, ChainJoint] = {}
         for number, line in lines:
-            place = Place(self.path, number)
+            place = FilePlace(self.path, number)
             if line.startswith("#"):
                 said = line[1:].strip()
                 if said.startswith("time"):
@@ -335,7 +335,7 @@ class _Reader:
                 hint = "The first comment lines name the columns, as '# time [s], joint_1 [rad]'."
                 raise place.refused("expected column headings before the first row, got none.", hint=hint)
 
-    def take_comment(self, said: str, place: Place) -> ChainJoint | None:
+    def take_comment(self, said: str, place: FilePlace) -> ChainJoint | None:
         """A line of the head: the format, the name, or a joint."""
         if said.startswith("nao_kin trajectory") and said != FORMAT:
             raise place.refused(f"expected {FORMAT!r}, got {said[:60]!r}.")
@@ -353,7 +353,7 @@ class _Reader:
         self.name = record
         return None
 
-    def take_columns(self, found: list[str], said: str, joints: tuple[ChainJoint, ...], place: Place) -> None:
+    def take_columns(self, found: list[str], said: str, joints: tuple[ChainJoint, ...], place: FilePlace) -> None:
         """The headings: of the joints of the head, or, without those, joints without limits."""
         if self.columns:
             raise place.refused("the column headings are there already.")
@@ -377,7 +377,7 @@ class _Reader:
 
     def sample(self, number: int, line: str) -> list[float]:
         """One row."""
-        place = Place(self.path, number)
+        place = FilePlace(self.path, number)
         words = line.split() if self.form == "txt" else [word.strip() for word in line.split(",")]
         if len(words) != len(self.columns):
             missing = f" {self.columns[len(words)]} is missing." if len(words) < len(self.columns) else ""
@@ -388,7 +388,7 @@ class _Reader:
         ]
 
 
-def _csv_cells(line: str, place: Place) -> list[str]:
+def _csv_cells(line: str, place: FilePlace) -> list[str]:
     try:
         return next(csv.reader([line], strict=True))
     except csv.Error as error:
