@@ -13,8 +13,7 @@ import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.motion.hexapod.footfall import GAITS, LEGS, BodyCourse, Gait
-from nao_kin.motion.hexapod.gait import Walk, fastest, walk
-from nao_kin.motion.hexapod.walk_plan import WalkPlan
+from nao_kin.motion.hexapod.gait import Walk, WalkPlan, fastest, walk
 from nao_kin.motion.hexapod.walk_request import WalkCommand
 from tests.conftest import robot
 

@@ -117,7 +117,7 @@ def _speeds(robot: Robot) -> list[dict[str, Any]]:
 def _torso(give: str, paths: int, seed: int) -> dict[str, Any]:
     import numpy as np
 
-    from nao_kin.motion.nao.torso import torso_motion
+    from nao_kin.motion.nao.feet import torso_motion
     from nao_kin.robot.robot import load
 
     robot, times, rng = load("nao"), np.linspace(0.0, 4.0, _SAMPLES), np.random.default_rng(seed)

@@ -96,7 +96,7 @@ _NOTES = (
 
 
 def _row(case: str, plant: Plant, reference: Trajectory, integral: bool) -> dict[str, Any]:
-    from nao_kin.motion.loop.tuning import P_OVERSHOOT, compare_feed_forward, tune
+    from nao_kin.motion.loop.servo import P_OVERSHOOT, compare_feed_forward, tune
 
     times, allowed = (_INTEGRAL_TIMES, _PI_OVERSHOOT) if integral else ((), P_OVERSHOOT)
     gains = tune(plant, reference, integral_times=times, allowed=allowed, period=_PERIOD)
