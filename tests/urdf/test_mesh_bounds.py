@@ -59,8 +59,6 @@ PLY = "ply\nformat ascii 1.0\n{}element vertex {}\nproperty float x\nproperty fl
 PLY += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
 SOLID = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
 SOLID += "endloop\nendfacet\nendsolid a\n"
-    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
-)
 ONE_FACE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
 BAD = {
