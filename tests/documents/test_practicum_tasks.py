@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from nao_kin.documents.practicum import CHECK_Q_DEG, CHECK_T_BASE_HAND
-from nao_kin.documents.practicum_tasks import (
+from nao_kin.documents.practicum.practicum_sheet import CHECK_Q_DEG, CHECK_T_BASE_HAND
+from nao_kin.documents.practicum.practicum_tasks import (
     dh_transform,
     forward_kinematics,
     interpolate_position,
