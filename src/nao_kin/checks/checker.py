@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
-from nao_kin.checks.finding import Finding, Report
+from nao_kin.checks.finding import Finding, Report, Severity
 from nao_kin.checks.rules import figure_rules as figures
 from nao_kin.checks.rules import inertia_rules as inertia
 from nao_kin.checks.rules import joint_rules as joints
@@ -24,7 +24,7 @@ from nao_kin.urdf.document import UNREADABLE, read_bytes
 from nao_kin.urdf.outline import Defect, Outline, describe
 from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.safe_xml import read_tree
-from nao_kin.urdf.structure import STAGES
+from nao_kin.urdf.structure import STAGES, TOLERATED
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -40,7 +40,7 @@ MOST_OF_A_CODE: Final = 100
 _QUOTED: Final = 4 * 1024 * 1024  # [bytes] of larger files that are no XML no line is quoted
 
 TEXT_RULES: Final[tuple[Rule, ...]] = (
-    vocabulary.version,
+    vocabulary.later_words,
     vocabulary.instructions,
     vocabulary.unknown_words,
     vocabulary.repeated_elements,
@@ -49,6 +49,7 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     names.shared_names,
     names.similar_names,
     joints.axes_of_other_length,
+    joints.empty_axes,
     joints.incomplete_limits,
     joints.zero_ranges,
     joints.continuous_with_limits,
@@ -56,6 +57,7 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     joints.mimics_of_fixed_joints,
     figures.other_readers_numbers,
     figures.stray_blanks,
+    figures.quaternions_of_other_length,
     figures.colours,
     figures.lengths_in_millimetres,
     figures.angles_in_degrees,
@@ -190,6 +192,10 @@ def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
     found = [list(_bounded(rule(outline))) for rule in local]
     yield from found
     sound = not any(found)
+    tolerated = [list(_bounded(rule(outline))) for rule in TOLERATED]
+    yield from tolerated
+    # Whoever computes with it is told; the rules on the model would only say it again.
+    sound = sound and not any(_is_error(defect) for defects in tolerated for defect in defects)
     if not any(defect.code in _BREAKS_THE_TREE for defects in found for defect in defects):
         found = [list(_bounded(rule(outline))) for rule in connected]
         found.append(list(_bounded(tree.unreachable_links(subject))))
@@ -200,6 +206,10 @@ def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
     if sound:
         for model_rule in _model_rules(subject.thorough):
             yield _bounded(model_rule(subject))
+
+
+def _is_error(defect: Defect) -> bool:
+    return CATALOGUE[defect.code].severity is Severity.error
 
 
 def _model_rules(thorough: bool) -> tuple[Rule, ...]:

@@ -9,11 +9,12 @@ import importlib
 import io
 import os
 import sys
+import warnings
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import typer
 
-from nao_kin.errors import NaoKinError
+from nao_kin.errors import NaoKinError, UrdfWarning
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -80,6 +81,7 @@ def main() -> NoReturn:
     """Runs the command line and exits with its status."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal that has no arrow gets a question mark
+    warnings.formatwarning = _plain  # type: ignore[assignment]
     # typer reads every parameter of every command before it runs one, which takes longer than most of them do.
     asked = [word for word in sys.argv[1:2] if word in COMMANDS]
     try:
@@ -93,6 +95,13 @@ def main() -> NoReturn:
         typer.echo(f"nao-kin: {error.filename or 'file'}: {error.strerror or error}.", err=True)
         sys.exit(2)
     sys.exit(status)
+
+
+def _plain(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> str:
+    """A warning about a file in our words; others as Python prints them."""
+    if issubclass(category, UrdfWarning):
+        return f"nao-kin: {message}\n"
+    return f"{filename}:{lineno}: {category.__name__}: {message}\n"
 
 
 def _reader_has_left() -> NoReturn:

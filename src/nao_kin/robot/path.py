@@ -188,6 +188,8 @@ def joint_range(joint: UrdfJoint) -> tuple[float, float]:
     """Least and greatest value [rad or m]; infinite for a continuous joint."""
     if joint.kind == "continuous" or joint.limit is None or joint.limit.lower is None or joint.limit.upper is None:
         return -math.inf, math.inf
+    if joint.limit.swapped:  # no value lies in it; a chain with such a joint is refused
+        return -math.inf, math.inf
     return joint.limit.lower, joint.limit.upper
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -16,7 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.chain import LimitRule, OutsideLimit
-from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.errors import InvalidInputError, UnknownNameError, UrdfWarning
 from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
 from nao_kin.robot.path import Coupling, joint_range, motor_ranges
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
@@ -24,6 +25,7 @@ from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
 from nao_kin.table import Column, Table
 from nao_kin.urdf import UrdfDocument, read_urdf
+from nao_kin.urdf.writer import UNLIMITED
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,16 +48,29 @@ def load(robot: str | os.PathLike[str]) -> Robot:
         UnknownNameError: No robot of that name; carries near matches.
         MissingExtraError: The robot's files come with an optional extra.
         UrdfError: The file is unreadable, hostile or malformed; carries the line and the reason.
+
+    Warns:
+        UrdfWarning: The file has mistakes that every reader gets past, as limits with their ends swapped; with lines.
     """
     if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
         try:
             known = find_known(robot)
         except UnknownNameError:
             if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
-                return Robot.from_document(read_urdf(robot))
+                return _told(Robot.from_document(read_urdf(robot)))
             raise
-        return Robot.from_document(read_urdf(robot_file(known)), known)
-    return Robot.from_document(read_urdf(robot))
+        return _told(Robot.from_document(read_urdf(robot_file(known)), known))
+    return _told(Robot.from_document(read_urdf(robot)))
+
+
+def _told(robot: Robot) -> Robot:
+    """The same robot, after a warning about what its file was read in spite of."""
+    document = robot.document
+    if document.tolerated:
+        told = "; ".join(text.rstrip(".") for text in document.tolerated)
+        said = f"{document.path} was read, but {told}. `nao-kin check` says what to do."
+        warnings.warn(said, UrdfWarning, stacklevel=3)
+    return robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +115,11 @@ class Robot:
     @cached_property
     def model(self) -> pin.Model:
         """The `pinocchio.Model`, as an escape hatch; its joint order and vectors are Pinocchio's own."""
-        return pin.buildModelFromXML(self.document.to_xml())
+        model = pin.buildModelFromXML(self.document.to_xml())
+        for most in (model.velocityLimit, model.upperEffortLimit):  # the largest number stands for "no limit" there
+            most[most >= UNLIMITED] = math.inf
+        model.lowerEffortLimit = -model.upperEffortLimit
+        return model
 
     @cached_property
     def moving_joints(self) -> tuple[UrdfJoint, ...]:

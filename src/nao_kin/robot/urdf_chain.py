@@ -23,7 +23,7 @@ from nao_kin.chain import (
     limit_table,
     stacked_limits,
 )
-from nao_kin.errors import InvalidInputError, NoPathError
+from nao_kin.errors import InvalidInputError, NoPathError, UrdfError
 from nao_kin.kernels.joint_path import JointPath, joint_path
 from nao_kin.robot.path import Step, chain_joints, walk
 
@@ -61,6 +61,7 @@ class UrdfChain:
         steps, self._T_joint_tip = walk(robot, base, tip)
         if not steps:
             raise NoPathError(base, tip, robot.name)
+        _refuse_swapped_limits(robot, steps)
         self._steps, self._joints = steps, chain_joints(robot, steps)
         self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
         names = set(self.joint_names)
@@ -233,6 +234,16 @@ class UrdfChain:
 
     def _repr_html_(self) -> str:
         return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
+
+
+def _refuse_swapped_limits(robot: Robot, steps: Sequence[Step]) -> None:
+    """A joint without a single allowed value is nobody's concern until a chain moves it."""
+    for step in steps:
+        limit = step.joint.limit
+        if limit is not None and limit.swapped and step.joint.kind != "continuous":
+            reason = f"The lower limit {limit.lower:g} of the joint {step.joint.name!r} is above its upper limit "
+            reason += f"{limit.upper:g}, so that no value is allowed on a chain with it."
+            raise UrdfError(robot.document.path, limit.line, reason, "Are they swapped?", code="inverted-limit")
 
 
 def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:

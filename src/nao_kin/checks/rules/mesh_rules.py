@@ -13,6 +13,7 @@ import numpy as np
 
 from nao_kin.checks.subject import numbers
 from nao_kin.errors import UrdfError, near_matches
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
 from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_of
 
@@ -36,14 +37,22 @@ _BYTES = 64 * 1024 * 1024
 
 def shapes(subject: Subject) -> Iterator[Defect]:
     """Every visual and collision element has a shape that URDF defines."""
+    version = subject.outline.version
+    known = _SHAPES | {"capsule"} if version >= FormatVersion.V1_1 else _SHAPES
     for link in subject.outline.links:
         for solid in (*children(link, "visual"), *children(link, "collision")):
             geometry = first(solid, "geometry")
             tags = [] if geometry is None else [tag_of(shape) for shape in geometry]
-            if not tags or tags[0] not in _SHAPES:  # other readers look at the first one only
-                what = f"as its shape a <{tags[0][:40]}>, which URDF does not define" if any(tags[:1]) else "no shape"
+            if not tags or tags[0] not in known:  # other readers look at the first one only
+                what = (
+                    f"as its shape a <{tags[0][:40]}>, which URDF {version} does not define"
+                    if any(tags[:1])
+                    else "no shape"
+                )
                 message = f"The {describe(solid)} has {what}."
                 hint = "Shapes: <box>, <cylinder>, <sphere>, <mesh>, inside <geometry>."
+                if tags[:1] == ["capsule"]:
+                    hint = 'Capsules came with 1.1: write <robot version="1.1">, or a cylinder and two spheres.'
                 yield Defect("no-shape", solid if geometry is None else geometry, message, hint)
 
 
