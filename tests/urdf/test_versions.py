@@ -106,7 +106,7 @@ READ_ANYWAY = {
     "a prefix that nothing declares": (arm().replace("</robot>", f"\n{SENSOR}</robot>"), "line 6", "sensor:camera"),
     "xacro beside a whole robot": (
         arm().replace("</robot>", "\n<xacro:property name='x'/></robot>"),
-        "line 5",
+        "line 6",
         "xacro",
     ),
     "an axis without direction": (arm().replace('<axis xyz="0 0 1"/>', "<axis/>"), "line 3", "no xyz, and x is taken"),

@@ -6,8 +6,6 @@ Pinocchio's own configuration vector stays behind it: outside, a robot has postu
 from __future__ import annotations
 
 import math
-import os
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -17,17 +15,19 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.chain import LimitRule, OutsideLimit
-from nao_kin.errors import InvalidInputError, UnknownNameError, UrdfWarning
-from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
+from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share
 from nao_kin.robot.path import Coupling, joint_range, motor_ranges
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
+from nao_kin.robot.sources import read_source, tell
 from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
 from nao_kin.table import Column, Table
-from nao_kin.urdf import UrdfDocument, read_urdf
+from nao_kin.urdf import UrdfDocument
 from nao_kin.urdf.writer import UNLIMITED
 
 if TYPE_CHECKING:
+    import os
     from pathlib import Path
 
     from nao_kin.urdf.elements import UrdfJoint
@@ -52,25 +52,9 @@ def load(robot: str | os.PathLike[str]) -> Robot:
     Warns:
         UrdfWarning: The file has mistakes that every reader gets past, as limits with their ends swapped; with lines.
     """
-    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
-        try:
-            known = find_known(robot)
-        except UnknownNameError:
-            if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
-                return _told(Robot.from_document(read_urdf(robot)))
-            raise
-        return _told(Robot.from_document(read_urdf(robot_file(known)), known))
-    return _told(Robot.from_document(read_urdf(robot)))
-
-
-def _told(robot: Robot) -> Robot:
-    """The same robot, after a warning about what its file was read in spite of."""
-    document = robot.document
-    if document.tolerated:
-        told = "; ".join(text.rstrip(".") for text in document.tolerated)
-        said = f"{document.path} was read, but {told}. `nao-kin check` says what to do."
-        warnings.warn(said, UrdfWarning, stacklevel=3)
-    return robot
+    document, known = read_source(robot)
+    tell(document)
+    return Robot.from_document(document, known)
 
 
 @dataclass(frozen=True, eq=False)
