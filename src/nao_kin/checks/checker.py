@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
 from nao_kin.checks.finding import Finding, Report, Severity
+from nao_kin.checks.rules import control_rules as control
 from nao_kin.checks.rules import figure_rules as figures
 from nao_kin.checks.rules import inertia_rules as inertia
 from nao_kin.checks.rules import joint_rules as joints
+from nao_kin.checks.rules import launch_rules as launch
 from nao_kin.checks.rules import mesh_rules as meshes
 from nao_kin.checks.rules import name_rules as names
 from nao_kin.checks.rules import tree_rules as tree
@@ -20,7 +22,7 @@ from nao_kin.checks.rules import vocabulary_rules as vocabulary
 from nao_kin.checks.subject import Subject
 from nao_kin.errors import UnknownNameError, UrdfError
 from nao_kin.robot.known import KNOWN_ROBOTS, find_known, robot_file
-from nao_kin.urdf.document import UNREADABLE, read_bytes
+from nao_kin.urdf.document import UNREADABLE, read_bytes, read_urdf
 from nao_kin.urdf.outline import Defect, Outline, describe
 from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.safe_xml import read_tree
@@ -53,6 +55,7 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     joints.incomplete_limits,
     joints.zero_ranges,
     joints.continuous_with_limits,
+    joints.slips_between_limits,
     joints.limits_in_other_units,
     joints.mimics_of_fixed_joints,
     figures.other_readers_numbers,
@@ -62,12 +65,19 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     figures.lengths_in_millimetres,
     figures.angles_in_degrees,
     inertia.incomplete_inertials,
+    inertia.empty_inertials,
     inertia.principal_moments,
     inertia.moving_without_inertia,
     inertia.masses_out_of_scale,
     meshes.shapes,
+    meshes.missing_collisions,
     meshes.mesh_files,
     meshes.mesh_contents,
+    control.controlled_joints,
+    control.transmission_joints,
+    control.gazebo_references,
+    launch.blanks_in_names,
+    launch.colons_in_comments,
 )
 """Rules on the text, for every file that is a URDF at all; each skips what another one reports."""
 
@@ -93,15 +103,18 @@ def check(
     thorough: bool = False,
     select: Collection[str] = (),
     ignore: Collection[str] = (),
+    urdf: str | os.PathLike[str] | None = None,
 ) -> Report:
-    """Check a URDF file, by path, or the file of a known robot, by name.
+    """Check a URDF or SRDF file, by path, or the file of a known robot, by name.
 
     Args:
-        robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path.
+        robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path. What ends
+            in ``.srdf`` is MoveIt's file beside a URDF.
         packages: Package folders by name, or folders that hold packages, for ``package://`` in mesh names.
         thorough: Also open every mesh, however many, and hold Pinocchio against yourdfpy at random postures.
         select: Report these codes only; all if empty.
         ignore: Do not report these.
+        urdf: The URDF that an SRDF is about; looked for beside it if None.
 
     Returns:
         Every finding with its line, sorted. A file that cannot be parsed is a finding too.
@@ -120,6 +133,8 @@ def check(
             raise
         return _Listing(path, select, ignore).report_refusal(refusal, b"")
     folder = Path(path).absolute().parent
+    if path.endswith(".srdf"):
+        return _check_srdf(data, _Listing(path, select, ignore), folder, urdf)
     return check_bytes(data, path, folder=folder, packages=packages, thorough=thorough, select=select, ignore=ignore)
 
 
@@ -160,6 +175,20 @@ def check_bytes(
     subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known)
     for defects in _examination(subject):
         listing.add(subject, defects)
+    return listing.report()
+
+
+def _check_srdf(data: bytes, listing: _Listing, folder: Path, urdf: str | os.PathLike[str] | None) -> Report:
+    from nao_kin.checks.srdf import RULES, Semantics, urdf_of
+
+    try:
+        root = read_tree(data, listing.path)
+    except UrdfError as refusal:
+        return listing.report_refusal(refusal, data)
+    subject = Subject(listing.path, data, Outline(root), Positions.of(data, root), folder)
+    semantics = Semantics(root, urdf_of(root, folder) if urdf is None else read_urdf(urdf))
+    for rule in RULES:
+        listing.add(subject, _bounded(rule(semantics)))
     return listing.report()
 
 
@@ -217,6 +246,7 @@ def _model_rules(thorough: bool) -> tuple[Rule, ...]:
     from nao_kin.checks.rules import collision_rules as collision
     from nao_kin.checks.rules import mirror_rules as mirror
     from nao_kin.checks.rules import pose_rules as poses
+    from nao_kin.checks.rules import weight_rules as weight
 
     rules: tuple[Rule, ...] = (
         poses.coupled_ranges,
@@ -226,8 +256,9 @@ def _model_rules(thorough: bool) -> tuple[Rule, ...]:
         mirror.limits_of_twins,
         mirror.inertia_of_twins,
         collision.self_collisions,
+        weight.balance_at_zero,
     )
-    return (*rules, poses.readers_agree) if thorough else rules
+    return (*rules, poses.readers_agree, weight.efforts_against_gravity) if thorough else rules
 
 
 def _bounded(defects: Iterator[Defect]) -> Iterator[Defect]:
@@ -280,7 +311,7 @@ class _Listing:
 
 def _path_of(robot: str | os.PathLike[str]) -> str:
     """The path that is meant, by the rule of `nao_kin.load`."""
-    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
+    if isinstance(robot, str) and not robot.endswith((".urdf", ".srdf")) and os.sep not in robot:
         try:
             return os.fspath(robot_file(find_known(robot)))
         except UnknownNameError:

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["check"]
 
 
+_SUFFIXES = {".urdf", ".srdf"}
+
+
 class CheckFormat(StrEnum):
     """How findings are printed."""
 
@@ -31,7 +34,7 @@ class CheckFormat(StrEnum):
     github = "github"
 
 
-_FILES_HELP = "URDF files, directories (every .urdf below them), globs, names of known robots; - is standard input."
+_FILES_HELP = "URDF and SRDF files, directories (all below them), globs, names of known robots; - is standard input."
 
 
 def check(
@@ -43,6 +46,7 @@ def check(
     thorough: Annotated[bool, typer.Option("--thorough", help="Open every mesh; hold two readers together.")] = False,
     package: Annotated[list[str] | None, typer.Option(help="Where package://NAME is.", metavar="NAME=DIR")] = None,
     dh: Annotated[str | None, typer.Option(help="A DH table (TOML) to hold the model against.")] = None,
+    urdf: Annotated[str | None, typer.Option(help="The URDF that an SRDF is about.", metavar="FILE")] = None,
     against: Annotated[str | None, typer.Option(help="Another URDF to hold the model against.")] = None,
     baseline: Annotated[Path | None, typer.Option(help="Do not report what this file knows already.")] = None,
     update_baseline: Annotated[bool, typer.Option("--update-baseline", help="Record the findings in it.")] = False,
@@ -70,7 +74,7 @@ def check(
     reports, unreadable = [], False
     for path in paths:
         try:
-            reports.append(_checked(path, options, dh, against))
+            reports.append(_checked(path, options, urdf, (dh, against)))
         except UrdfError as error:
             typer.echo(f"nao-kin: {error}", err=True)
             unreadable = True
@@ -94,7 +98,7 @@ class _Options(TypedDict):
     ignore: list[str]
 
 
-def _checked(path: str, options: _Options, table: str | None, other: str | None) -> Report:
+def _checked(path: str, options: _Options, urdf: str | None, held: tuple[str | None, str | None]) -> Report:
     from nao_kin.checks.checker import check as check_file
     from nao_kin.checks.checker import check_bytes
     from nao_kin.checks.finding import Report
@@ -103,7 +107,7 @@ def _checked(path: str, options: _Options, table: str | None, other: str | None)
     if path == "-":
         data = sys.stdin.buffer.read(LIMITS.file_bytes + 1)
         return check_bytes(data, "<stdin>", **options)
-    found = check_file(path, **options)
+    found, (table, other) = check_file(path, urdf=urdf, **options), held
     if (table or other) and found.errors:
         typer.echo(f"nao-kin: {path} was not compared, because of its errors.", err=True)
     elif table or other:
@@ -166,9 +170,9 @@ def _paths(given: list[str]) -> list[str]:
 
 def _expanded(word: str) -> Iterator[str]:
     if os.path.isdir(word):  # noqa: PTH112 - Path raises for long names
-        found = sorted(map(str, Path(word).rglob("*.urdf")))
+        found = sorted(str(path) for path in Path(word).rglob("*") if path.suffix in _SUFFIXES)
         if not found:
-            raise typer.BadParameter(f"{word}: no .urdf file in this directory or below.")
+            raise typer.BadParameter(f"{word}: no .urdf or .srdf file in this directory or below.")
         yield from found
     elif any(sign in word for sign in "*?[") and not os.path.lexists(word):
         found = sorted(path for path in glob.glob(word, recursive=True) if os.path.isfile(path))  # noqa: PTH113, PTH207

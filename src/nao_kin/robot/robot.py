@@ -23,13 +23,13 @@ from nao_kin.robot.sources import read_source, tell
 from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
 from nao_kin.table import Column, Table
-from nao_kin.urdf import UrdfDocument
 from nao_kin.urdf.writer import UNLIMITED
 
 if TYPE_CHECKING:
     import os
     from pathlib import Path
 
+    from nao_kin.urdf import UrdfDocument
     from nao_kin.urdf.elements import UrdfJoint
 
 __all__ = ["Robot", "load"]

@@ -128,6 +128,15 @@ JOINTS: Final = (
         "Give the range, or make the joint fixed.",
     ),
     Entry(
+        "limit-digits",
+        Severity.warning,
+        "The two limits of a joint are the same figure with two neighbouring digits swapped.",
+        "One of them was mistyped, so the joint stops short or runs into its stop.",
+        '<limit lower="-2.618" upper="2.168" …/>',
+        '<limit lower="-2.618" upper="2.618" …/>',
+        "Look up which of the two is right.",
+    ),
+    Entry(
         "negative-limit",
         Severity.error,
         "A velocity or effort limit is negative.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from nao_kin.checks.digits import swapped_digits
 from nao_kin.checks.subject import numbers
 from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import MOVING, Defect, describe, first
@@ -24,6 +25,7 @@ __all__ = [
     "incomplete_limits",
     "limits_in_other_units",
     "mimics_of_fixed_joints",
+    "slips_between_limits",
     "zero_ranges",
 ]
 
@@ -83,6 +85,21 @@ def zero_ranges(subject: Subject) -> Iterator[Defect]:
             message = f"The {describe(joint)} may only be at {lower:g}: its limits are equal."
             hint = "An absent limit counts as 0; give both, or make the joint fixed."
             yield Defect("zero-range", limit, message, hint, "lower")
+
+
+def slips_between_limits(subject: Subject) -> Iterator[Defect]:
+    """The two limits of a joint are not the same figure with two neighbouring digits swapped."""
+    for joint in subject.outline.moving:
+        limit = first(joint, "limit")
+        lower, upper = (None if limit is None else numbers(limit, side) for side in ("lower", "upper"))
+        if limit is None or lower is None or upper is None or joint.get("type") == "continuous":
+            continue
+        if lower[0] < 0.0 < upper[0] and swapped_digits(lower[0], upper[0]):
+            message = (
+                f"The limits of the {describe(joint)} are {lower[0]:.9g} and {upper[0]:.9g}: the same figure with "
+            )
+            message += "two digits swapped."
+            yield Defect("limit-digits", limit, message, "Look up which of the two is right.", "upper")
 
 
 def continuous_with_limits(subject: Subject) -> Iterator[Defect]:
