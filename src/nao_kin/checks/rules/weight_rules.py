@@ -47,14 +47,14 @@ def efforts_against_gravity(subject: Subject) -> Iterator[Defect]:
             torque = abs(float(torques[model.joints[model.getJointId(name)].idx_v]))
             if torque > worst[name][0]:
                 worst[name] = torque, values
-    for name, (torque, posture) in worst.items():
+    for name, (torque, held) in worst.items():
         limit = joints[name].limit
         effort = 0.0 if limit is None or limit.effort is None else limit.effort
         if torque > (1.0 + _MARGIN) * effort:
             element, unit = subject.joint(name), "N" if joints[name].kind == "prismatic" else "N m"
             at = first(element, "limit")
             message = f"The effort {effort:g} {unit} of the {describe(element)} does not hold the robot: gravity takes "
-            message += f"{torque:.4g} {unit} with {_shown(robot, posture)}."
+            message += f"{torque:.4g} {unit} with {_shown(robot, held)}."
             hint = "With the root fixed and z up. Is the effort the motor's before the gear, or a mass wrong?"
             yield Defect("weak-effort", element if at is None else at, message, hint, "effort")
 
