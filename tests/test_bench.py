@@ -156,7 +156,7 @@ def test_methods_reach_near_targets_and_none_lies() -> None:
 
 
 def test_convergence_plots_are_pictures(tmp_path: Path) -> None:
-    from nao_kin.bench.convergence import draw
+    from nao_kin.bench.bench_methods import draw
     from nao_kin.bench.method_sets import easy
 
     near = easy(nk.load("nao_v33_h21").chain("left_arm"), "position", 5, np.random.default_rng(0))

@@ -12,8 +12,8 @@ import typer
 import nao_kin as nk
 from nao_kin.bench import peers as peers_module
 from nao_kin.bench.arms import main_arm, many_chains
+from nao_kin.bench.bench_edges import bad_targets, farthest, near_full_reach
 from nao_kin.bench.contest import Contender, Task, contest
-from nao_kin.bench.edge_targets import bad_targets, farthest, near_full_reach
 from nao_kin.bench.measuring import in_turns, one_thread
 from nao_kin.bench.peers import installed_peers
 from nao_kin.bench.referee import NEAR, Referee

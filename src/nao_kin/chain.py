@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 __all__ = [
     "Chain",
     "ChainJoint",
+    "FlatChain",
     "JacobianFrame",
     "JointColumns",
     "JointSpace",
     "LimitRule",
+    "MovingKind",
     "OutsideLimit",
-    "compiled_jacobians",
-    "compiled_poses",
     "configuration",
     "finite_difference_jacobian",
     "in_limits",
@@ -38,15 +38,16 @@ __all__ = [
     "joint_table",
     "limit_table",
     "limit_text",
+    "limit_texts",
     "neutral",
     "outside_limits",
     "random_configurations",
     "sampling_range",
-    "stacked_limits",
     "value_unit",
 ]
 
 JacobianFrame: TypeAlias = Literal["base", "tip"]
+MovingKind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ class ChainJoint:
     """
 
     name: str
-    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
+    kind: MovingKind = "revolute"
     lower: float = -math.inf
     upper: float = math.inf
     max_velocity: float = math.inf
@@ -171,13 +172,6 @@ class Chain(JointSpace, Protocol):
         """Frame Jacobians (N, 6, n), base axes, for configurations (N, n)."""
 
 
-def stacked_limits(joints: tuple[ChainJoint, ...]) -> tuple[Floats, Floats, Floats]:
-    """Read-only arrays (lower, upper, max_velocity) of the joints."""
-    columns = ([j.lower for j in joints], [j.upper for j in joints], [j.max_velocity for j in joints])
-    lower, upper, velocity = (frozen(np.array(column, dtype=np.float64)) for column in columns)
-    return lower, upper, velocity
-
-
 class JointColumns:
     """Names and limits of what has ``joints``: the part of a `JointSpace` that follows from them."""
 
@@ -209,7 +203,43 @@ class JointColumns:
 
     @cached_property
     def _limits(self) -> tuple[Floats, Floats, Floats]:
-        return stacked_limits(self.joints)
+        rows = [(joint.lower, joint.upper, joint.max_velocity) for joint in self.joints]
+        lower, upper, velocity = (frozen(column.copy()) for column in np.reshape(rows, (-1, 3)).astype(np.float64).T)
+        return lower, upper, velocity
+
+
+class FlatChain(JointColumns):
+    """What has a flat form: the part of a `Chain` that compiled code does, many configurations at a time."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def name(self) -> str:
+            """What to call it in messages."""
+
+        @property
+        def joint_path(self) -> JointPath:
+            """The flat form that compiled code runs on."""
+
+    def poses(self, Q: ArrayLike) -> Floats:
+        """T_base_tip (N, 4, 4) for configurations (N, n), on all cores.
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        from nao_kin.kernels.forward import poses  # imports numba, which costs time
+
+        return poses(self.joint_path, rows(Q, f"Q of {self.name}", len(self.joints)))
+
+    def jacobians(self, Q: ArrayLike) -> Floats:
+        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n), on all cores.
+
+        Raises:
+            InvalidInputError: Wrong shape or not finite.
+        """
+        from nao_kin.kernels.forward import jacobians
+
+        return jacobians(self.joint_path, rows(Q, f"Q of {self.name}", len(self.joints)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,28 +329,6 @@ def random_configurations(chain: JointSpace, count: int, rng: np.random.Generato
     return Q
 
 
-def compiled_poses(chain: Chain, Q: ArrayLike) -> Floats:
-    """T_base_tip (N, 4, 4) of every row of Q (N, n), on all cores.
-
-    Raises:
-        InvalidInputError: Wrong shape or not finite.
-    """
-    from nao_kin.kernels.forward import poses  # imports numba, which costs time
-
-    return poses(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
-
-
-def compiled_jacobians(chain: Chain, Q: ArrayLike) -> Floats:
-    """Frame Jacobians (N, 6, n), base axes, of every row of Q (N, n), on all cores.
-
-    Raises:
-        InvalidInputError: Wrong shape or not finite.
-    """
-    from nao_kin.kernels.forward import jacobians
-
-    return jacobians(chain.joint_path, rows(Q, f"Q of {chain.name}", len(chain.joints)))
-
-
 def finite_difference_jacobian(chain: Chain, q: ArrayLike, step: float = 1e-5) -> Floats:
     """Frame Jacobian (6, n) in base axes by central differences of `chain.pose`: an oracle, not a fast path.
 
@@ -348,27 +356,34 @@ def value_unit(joints: Iterable[ChainJoint], per: str = "") -> str:
     return " or ".join(unit + per for unit in units or ["rad"])
 
 
-def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "") -> Table:
-    """The joints of a chain with their values in radians and degrees, or metres."""
-    cells = tuple(
-        (joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}")
+def joint_table(chain: JointSpace, q: ArrayLike, title: str = "", note: str = "", *, limits: bool = False) -> Table:
+    """The joints of a chain with their values in radians and degrees, or metres; with their ranges and speeds too."""
+    rows = [
+        [joint.name, f"{value:.6f}", "" if joint.kind == "prismatic" else f"{math.degrees(value):.3f}"]
         for joint, value in zip(chain.joints, configuration(chain, q).tolist(), strict=True)
-    )
-    columns = (Column("joint"), Column("[rad, m]", number=True), Column("[deg]", number=True))
-    return Table(columns, cells, title=title, note=note)
+    ]
+    headings = ["[rad, m]", "[deg]"]
+    if limits:
+        headings += ["range", f"max [{value_unit(chain.joints, '/s')}]"]
+        for row, (lower, upper, speed) in zip(rows, map(limit_texts, chain.joints), strict=True):
+            row += [lower if lower == upper == "none" else f"{lower} … {upper}", speed]
+    columns = (Column("joint"), *(Column(heading, number=True) for heading in headings))
+    return Table(columns, tuple(map(tuple, rows)), title=title, note=note)
 
 
 def limit_table(chain: JointSpace, title: str) -> Table:
     """The joints of a chain or tree with their kinds, ranges and speeds; coupled ranges are named below."""
     unit, speed = value_unit(chain.joints), value_unit(chain.joints, "/s")
     numbers = (f"lower [{unit}]", f"upper [{unit}]", f"max speed [{speed}]")
-    rows = tuple(
-        (joint.name, joint.kind, *map(limit_text, (joint.lower, joint.upper, joint.max_velocity)))
-        for joint in chain.joints
-    )
+    rows = tuple((joint.name, joint.kind, *limit_texts(joint)) for joint in chain.joints)
     rules = [f"The range of {rule.joint} also depends on {rule.by}." for rule in chain.limit_rules]
     columns = (Column("joint"), Column("kind"), *(Column(heading, number=True) for heading in numbers))
     return Table(columns, rows, title=title, note="\n".join(rules))
+
+
+def limit_texts(joint: ChainJoint) -> tuple[str, str, str]:
+    """Least value, greatest value and greatest speed of a joint for a table."""
+    return limit_text(joint.lower), limit_text(joint.upper), limit_text(joint.max_velocity)
 
 
 def limit_text(value: float) -> str:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["MOVED", "answer_for_old_places"]
 
 MOVED: Final = {
+    "documents.practicum_ik": "documents.practicum.position_ik",
+    "documents.practicum_tasks": "documents.practicum.practicum_tasks",
+    "documents.hexapod_article": "documents.hexapod.hexapod_article",
     "analytic.batch": "analytic.solution_batch",
     "analytic.body": "analytic.hexapod.body",
     "analytic.intervals": "analytic.nao.intervals",

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from nao_kin.bench.interpolation import compare
-from nao_kin.bench.not_converging import not_converging
+from nao_kin.bench.bench_practicum import not_converging
+from nao_kin.bench.bench_trajectory import compare
 
 ROOT = Path(__file__).parent.parent.parent
 PAGE = (ROOT / "docs" / "practicum.md").read_text(encoding="utf-8")

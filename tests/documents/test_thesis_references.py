@@ -7,14 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from nao_kin.documents import hexapod_article as article
-from nao_kin.documents import thesis_inverse as inverse
 from nao_kin.documents.claim import Claim, Verdict, judged
-from nao_kin.documents.hexapod_walker import foot_of, stances, walker
+from nao_kin.documents.hexapod import hexapod_article as article
+from nao_kin.documents.hexapod.hexapod_article import foot_of, stances, walker
 from nao_kin.documents.judging import claims
-from nao_kin.documents.thesis import left_arm, right_arm
-from nao_kin.documents.thesis_arms import Side, arm_configurations, described_arm, robot_arm
-from nao_kin.documents.thesis_inverse_checks import table_counts
+from nao_kin.documents.thesis import closed_form as inverse
+from nao_kin.documents.thesis.closed_form import table_counts
+from nao_kin.documents.thesis.thesis_arms import Side, arm_configurations, described_arm, left_arm, right_arm, robot_arm
 from nao_kin.se3 import rotation_x, rotation_y, rotation_z, translation
 
 SIDES: tuple[Side, Side] = ("left", "right")

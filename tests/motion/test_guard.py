@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.bench.bench_guard import _drawn, _least_between, _run
-from nao_kin.bench.guard_referee import ClearanceReferee
+from nao_kin.bench.bench_guard import ClearanceReferee, _drawn, _least_between, _run
 from nao_kin.chain import in_limits, random_configurations
 from nao_kin.collision import CollisionModel, Plane
 from nao_kin.errors import InvalidInputError

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 import math
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple
 
+import numpy as np
 import typer
 
+from nao_kin.analytic.matching import matched
+from nao_kin.analytic.six_r.six_r_bent_wrist import BRANCHES, SAMPLES, solve_densely
+from nao_kin.analytic.solution_batch import solve_all_batch
+from nao_kin.bench.measuring import in_turns, one_thread
+from nao_kin.bench.peers import product_of_exponentials
 from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.ik.target import Target
+from nao_kin.kernels.audit import tips
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy as np
+    from collections.abc import Callable, Iterator, Mapping
 
     from nao_kin.analytic.matching import Matched
     from nao_kin.arrays import Floats
     from nao_kin.robot.urdf_chain import UrdfChain
 
-__all__ = ["sixr"]
+__all__ = ["dense_and_singular", "rivals", "sixr"]
 
 _SAME = 1e-9  # [rad]: joints this near are recovered
 _REGULAR = 1e-6  # least singular value from which on a pose says what its joints are to 1e-9
@@ -57,8 +65,7 @@ def sixr(
     """Six-joint arms: recovered joints, residuals, missing branches, singular poses, any arm at all, and speed."""
     import numpy as np
 
-    from nao_kin.bench.sixr_bent import dense_and_singular
-    from nao_kin.bench.sixr_rivals import rivals
+    from nao_kin.bench.bench_sixr import dense_and_singular, rivals
 
     machine, rng = Machine(), np.random.default_rng(seed)
     arms = list(_arms())
@@ -287,3 +294,203 @@ def _general_bounds(row: dict[str, Any]) -> list[Goal]:
         Goal("any arm, solutions that only Newton found", row["missing"], 0.0, at_least=False),
         Goal("any arm, largest residual", row["residual"], _RESIDUAL, at_least=False),
     ]
+
+
+_DENSER: Final = 20
+_BENT_SAME: Final = 1e-5  # [rad]
+_BENT_SLACK: Final = 1e-6  # [m]
+_BISECTIONS: Final = 70
+_ALIGNED: Final = 4  # joint
+_BENT_HEADINGS = (
+    Heading("poses", "poses"),
+    Heading("targets", "number", "d"),
+    Heading("branches", "branches", ".3f"),
+    Heading("most", "most", "d"),
+    Heading("none", "none", "d"),
+    Heading("lost", "lost", "d"),
+    Heading("denser", "denser", "d"),
+    Heading("residual", "residual", ".0e"),
+)
+
+
+def dense_and_singular(
+    chain: UrdfChain, found: Matched, targets: int, rng: np.random.Generator
+) -> tuple[Sheet, list[Goal]]:
+    """The sheet, and what is demanded of it: random poses, and a twentieth as many of each singular family."""
+    families = [("random", rng.uniform(-np.pi, np.pi, (targets, 6))), *_families(chain, max(50, targets // 20), rng)]
+    rows = [_bent_row(chain, found, name, Q) for name, Q in families]
+    demanded = [
+        Goal(f"JACO2, poses {words}", sum(row[key] for row in rows), 0.0, at_least=False)
+        for key, words in (
+            ("none", "without solution"),
+            ("lost", "that lose their own joints"),
+            ("denser", "with more solutions when sampled more densely"),
+        )
+    ]
+    title = (
+        f"every branch of JACO2: poses with none, poses that lose their own joints, and poses of which {_DENSER} times "
+        "denser samples find more"
+    )
+    return Sheet("bent", title, _BENT_HEADINGS, rows), demanded
+
+
+def _bent_row(chain: UrdfChain, found: Matched, name: str, Q: Floats) -> dict[str, Any]:
+    goals, arm = chain.poses(Q), found.geometry.parameters
+    rows, counts = np.zeros((len(Q), BRANCHES, 8)), np.zeros(len(Q), dtype=np.int64)
+    more, denser = np.zeros_like(rows), np.zeros_like(counts)
+    found.form.solve_many(arm, 0, goals, np.zeros((1, 1)), _BENT_SLACK, rows, counts)
+    solve_densely(arm, _DENSER * SAMPLES, goals, more, denser)
+    known = [q[:count, :6] for q, count in zip(rows, counts, strict=True)]
+    reached = tips(chain.joint_path, np.ascontiguousarray(np.concatenate(known)))
+    return {
+        "poses": name,
+        "targets": len(Q),
+        "branches": float(counts.mean()),
+        "most": int(counts.max()),
+        "none": int((counts == 0).sum()),
+        "lost": sum(_bent_apart(ours, q) > _BENT_SAME for ours, q in zip(known, Q, strict=True)),
+        "denser": sum(
+            any(_bent_apart(ours, q) > _BENT_SAME for q in theirs[:count, :6])
+            for ours, theirs, count in zip(known, more, denser, strict=True)
+        ),
+        "residual": float(np.abs(reached - np.repeat(goals, counts, axis=0)).max()),
+    }
+
+
+def _bent_apart(known: Floats, q: Floats) -> float:
+    """Largest joint move from q to the nearest of some solutions, whole turns left out [rad]."""
+    moves = np.abs((known - q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=1, initial=0.0)
+    return float(moves.min(initial=math.inf))
+
+
+def _families(chain: UrdfChain, count: int, rng: np.random.Generator) -> Iterator[tuple[str, Floats]]:
+    """Joints (count, 6) of exactly singular poses, and of others where the arm is straight, aligned or rectangular."""
+    for joint in range(1, 5):
+        yield f"singular by joint {joint + 1}", _bent_singular(chain, joint, count, rng)
+    aligned = rng.uniform(-np.pi, np.pi, (count, 6))
+    aligned[:, _ALIGNED] = math.pi * rng.integers(0, 2, count)
+    yield "wrist aligned", aligned
+    for name, parts in (("quarter turns", 2), ("eighth turns", 4)):
+        turns = rng.integers(-parts, parts + 1, (count, 6)).astype(np.float64)
+        yield name, turns * (math.pi / parts)
+
+
+def _bent_singular(chain: UrdfChain, joint: int, count: int, rng: np.random.Generator) -> Floats:
+    """Joints (count, 6) at which the determinant of the Jacobian changes its sign as one joint turns."""
+    made: list[Floats] = []
+    while sum(map(len, made)) < count:
+        Q = rng.uniform(-np.pi, np.pi, (1000, 6))
+        low = Q[:, joint].copy()
+        high = low + 0.2
+        start = _determinants(chain, Q, joint, low)
+        change = (start < 0.0) != (_determinants(chain, Q, joint, high) < 0.0)
+        Q, low, high, start = Q[change], low[change], high[change], start[change]
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            same = (_determinants(chain, Q, joint, middle) < 0.0) == (start < 0.0)
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        Q[:, joint] = low
+        made.append(Q)
+    return np.concatenate(made)[:count]
+
+
+def _determinants(chain: UrdfChain, Q: Floats, joint: int, values: Floats) -> Floats:
+    moved = Q.copy()
+    moved[:, joint] = values
+    return np.asarray(np.linalg.det(chain.jacobians(moved)))
+
+
+_BATCH, _FEW, _ROUNDS = 10_000, 50, 5
+_OVER_EAIK, _OVER_SSIK = 1.5, 30.0
+_RIVAL_HEADINGS = (
+    Heading("arm", "arm"),
+    Heading("peer", "peer"),
+    Heading("theirs", "its µs", ".1f"),
+    Heading("kernel", "kernel µs", ".2f"),
+    Heading("judged", "judged µs", ".2f"),
+    Heading("kernel_ratio", "kernel ×", ".1f"),
+    Heading("judged_ratio", "judged ×", ".1f"),
+)
+
+
+def rivals(chains: Mapping[str, UrdfChain], rng: np.random.Generator) -> tuple[Sheet, list[Goal], list[str]]:
+    """The sheet, what is demanded of it, and lines about packages that are left out."""
+    rows, goals, left_out = list[dict[str, Any]](), list[Goal](), list[str]()
+    for arm, peer, setup, bound in _PEERS:
+        if importlib.util.find_spec(peer.replace("-", "_")) is None:
+            left_out.append(f"Without {peer}: to have it beside, pip install {peer}.")
+            continue
+        row = _rival_row(chains[arm], setup, rng) | {"arm": arm, "peer": peer}
+        rows.append(row)
+        if bound is None:
+            continue
+        for how in ("kernel", "judged"):
+            goals.append(Goal(f"{arm}, times faster than {peer}, {how}", row[f"{how}_ratio"], bound))
+    return Sheet("peers", "time a pose with all branches, one thread, batches", _RIVAL_HEADINGS, rows), goals, left_out
+
+
+def _rival_row(
+    chain: UrdfChain,
+    setup: Callable[[UrdfChain, Floats], tuple[Callable[[], object], int]],
+    rng: np.random.Generator,
+) -> dict[str, Any]:
+    poses = chain.poses(rng.uniform(-np.pi, np.pi, (_BATCH, 6)))
+    theirs, count = setup(chain, poses)
+    found = matched(chain, Target.of(poses[0]))
+    rows, counts = np.empty((_BATCH, found.request.branches, 8)), np.zeros(_BATCH, dtype=np.int64)
+
+    def kernel() -> None:
+        found.form.solve_many(found.geometry.parameters, 0, poses, np.zeros((1, 1)), 1e-6, rows, counts)
+
+    jobs: dict[str, Callable[[], object]] = {
+        "theirs": theirs,
+        "kernel": kernel,
+        "judged": lambda: solve_all_batch(chain, poses),
+    }
+    with one_thread():
+        kernel()
+        times = in_turns(jobs, range(_ROUNDS), {"theirs": 1, "kernel": 1, "judged": 1})
+    cost = {name: min(values) / (count if name == "theirs" else _BATCH) * 1e6 for name, values in times.items()}
+    return cost | {f"{how}_ratio": cost["theirs"] / cost[how] for how in ("kernel", "judged")}
+
+
+def _eaik(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
+    """Its batched call on one thread; it takes no tool rotation."""
+    H, P, R_last_tip = product_of_exponentials(chain)
+    robot = importlib.import_module("eaik.IK_HP").HPRobot(H, P)
+    wanted = poses.copy()
+    wanted[:, :3, :3] = poses[:, :3, :3] @ R_last_tip.T
+    return lambda: robot.IK_batched(wanted, 1), len(wanted)
+
+
+def _ik_geo(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
+    """One call a pose, as it has no batched one; it takes rotations column by column and no tool rotation."""
+    H, P, R_last_tip = product_of_exponentials(chain)
+    robot = importlib.import_module("ik_geo").Robot.three_parallel_two_intersecting(H.tolist(), P.tolist())
+    wanted = [((R_last_tip @ T[:3, :3].T).tolist(), T[:3, 3].tolist()) for T in poses]
+
+    def call() -> None:
+        for columns, place in wanted:
+            robot.get_ik(columns, place)
+
+    return call, len(wanted)
+
+
+def _ssik(chain: UrdfChain, poses: Floats) -> tuple[Callable[[], object], int]:
+    """The arm from its file, derived anew, which takes it a minute; it has no batched call."""
+    manipulator = importlib.import_module("ssik").Manipulator
+    arm = manipulator.from_urdf(str(chain.robot.document.path), base=chain.base, ee=chain.tip)
+    arm.solve(poses[0], respect_limits=False, enumerate_windings=False)
+
+    def call() -> None:
+        for T in poses[:_FEW]:
+            arm.solve(T, respect_limits=False, enumerate_windings=False)
+
+    return call, _FEW
+
+
+_PEERS: Final = (
+    ("ur5", "eaik", _eaik, _OVER_EAIK),
+    ("ur5", "ik-geo", _ik_geo, None),
+    ("jaco2", "ssik", _ssik, _OVER_SSIK),
+)

@@ -1,12 +1,17 @@
-"""What thesis and practicum say of the methods, each claim held against what was measured in the same run."""
+"""What thesis and practicum say of the methods, each claim held against what was measured in the same run.
+
+What the thesis says is judged by the rules of `nao_kin.documents.thesis.methods_compared`, as the ledger's small
+samples are; here cost is time, and targets are many.
+"""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from nao_kin.documents.thesis import methods_compared as said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -16,9 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Figures", "claims"]
 
-JACOBIAN = ("transpose", "transpose_buss", "pinv", "newton", "dls", "dls_adaptive", "sdls", "tsvd", "lm")
 DAMPED = ("dls", "dls_adaptive", "sdls", "lm")
-ITERATIVE = (*JACOBIAN, "combination", "ccd", "ftl", "fabrik")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,9 +46,9 @@ class Figures:
 def claims(figures: Figures) -> list[str]:
     """A sentence a claim: where it stands, what it says, confirmed or refuted, and by how much."""
     told = []
-    for place, said, check in _CLAIMS:
+    for place, text, check in _CLAIMS:
         holds, figure = check(figures)
-        told += ["", f"{place}: “{said}”: {'confirmed' if holds else 'refuted'}. {figure}"]
+        told += ["", f"{place}: “{text}”: {'confirmed' if holds else 'refuted'}. {figure}"]
     return told
 
 
@@ -59,6 +62,11 @@ def _those(outcomes: Iterable[Outcome], methods: Sequence[str], kind: str) -> li
 
 def _micro(outcome: Outcome) -> float:
     return outcome.median_seconds * 1e6
+
+
+def _cost(outcomes: Iterable[Outcome], methods: Sequence[str]) -> dict[str, float]:
+    """Median times [µs] on positions of the NAO arm."""
+    return {o.method: _micro(o) for o in _those(outcomes, methods, "position")}
 
 
 def _closed_is_fastest(f: Figures) -> tuple[bool, str]:
@@ -87,20 +95,20 @@ def _closed_is_stable(f: Figures) -> tuple[bool, str]:
 
 def _fabrik_is_fastest(f: Figures) -> tuple[bool, str]:
     """Thesis 3.5."""
-    fabrik = _pick(f.restarts, "fabrik", "position")
-    rank = sorted(_those(f.restarts, ITERATIVE, "position"), key=_micro)
-    return rank[0].method == "fabrik", (
-        f"On the NAO arm {rank[0].method} takes {_micro(rank[0]):.0f} µs in the median and fabrik "
-        f"{_micro(fabrik):.0f} µs, place {rank.index(fabrik) + 1} of {len(rank)}."
+    cost = _cost(f.restarts, said.ITERATIVE)
+    before, least = said.cheaper(cost, "fabrik"), min(cost, key=cost.__getitem__)
+    return not before, (
+        f"On the NAO arm {least} takes {cost[least]:.0f} µs in the median and fabrik "
+        f"{cost['fabrik']:.0f} µs, place {len(before) + 1} of {len(cost)}."
     )
 
 
 def _thousand_times(f: Figures) -> tuple[bool, str]:
     """Thesis 3.5, quoting Aristidou and Lasenby."""
-    fabrik = _pick(f.restarts, "fabrik", "position")
-    ratios = {o.method: _micro(o) / _micro(fabrik) for o in _those(f.restarts, JACOBIAN, "position")}
+    cost = _cost(f.restarts, said.ITERATIVE)
+    ratios = {name: cost[name] / cost["fabrik"] for name in said.JACOBIAN}
     slowest, quickest = max(ratios, key=ratios.__getitem__), min(ratios, key=ratios.__getitem__)
-    return ratios[slowest] >= 1000.0, (
+    return not said.not_so_much_dearer(cost, "fabrik", said.ratio()), (
         f"Against fabrik on the NAO arm they take from {ratios[quickest]:.2f} ({quickest}) to {ratios[slowest]:.2f} "
         f"({slowest}) times as long."
     )
@@ -108,11 +116,11 @@ def _thousand_times(f: Figures) -> tuple[bool, str]:
 
 def _many_iterations(f: Figures) -> tuple[bool, str]:
     """Thesis 3.5."""
-    fabrik = _pick(f.near, "fabrik", "position")
-    counts = {o.method: o.median_iterations for o in _those(f.near, JACOBIAN, "position")}
-    fewer = [name for name, count in counts.items() if count < fabrik.median_iterations]
+    every = {o.method: o.median_iterations for o in _those(f.near, said.ITERATIVE, "position")}
+    counts = {name: every[name] for name in said.JACOBIAN}
+    fewer = [name for name in said.cheaper(every, "fabrik") if name in counts]
     return not fewer, (
-        f"Near targets take fabrik {fabrik.median_iterations:.0f} iterations, {min(counts, key=counts.__getitem__)} "
+        f"Near targets take fabrik {every['fabrik']:.0f} iterations, {min(counts, key=counts.__getitem__)} "
         f"{min(counts.values()):.0f} and {max(counts, key=counts.__getitem__)} {max(counts.values()):.0f}; "
         f"{len(fewer)} of {len(counts)} need fewer than fabrik."
     )
@@ -139,11 +147,10 @@ def _edge_for_fabrik(f: Figures) -> tuple[bool, str]:
 
 def _natural(f: Figures) -> tuple[bool, str]:
     """Thesis 3.4: the pose looks natural; measured as how far the joints go from where they were."""
-    fabrik = _pick(f.alone, "fabrik", "position")
-    moves = {o.method: o.largest_move for o in _those(f.alone, ITERATIVE, "position")}
+    moves = {o.method: o.largest_move for o in _those(f.alone, said.ITERATIVE, "position")}
     least = min(moves, key=moves.__getitem__)
-    return fabrik.largest_move <= 1.1 * moves[least], (
-        f"If natural means that joints move little: fabrik's largest joint moves by {fabrik.largest_move:.2f} rad in "
+    return said.extra_move(moves, "fabrik") <= 0.1, (
+        f"If natural means that joints move little: fabrik's largest joint moves by {moves['fabrik']:.2f} rad in "
         f"the median, {least}'s by {moves[least]:.2f}."
     )
 
@@ -151,21 +158,20 @@ def _natural(f: Figures) -> tuple[bool, str]:
 def _at_least_equal(f: Figures) -> tuple[bool, str]:
     """Thesis 4.1."""
     fabrik = _pick(f.alone, "fabrik", "position")
-    rivals = _those(f.alone, JACOBIAN, "position")
-    ahead = [o.method for o in rivals if o.success > fabrik.success and _micro(o) < _micro(fabrik)]
+    reached = {o.method: o.success for o in _those(f.alone, said.ITERATIVE, "position")}
+    ahead = said.as_good_and_cheaper(reached, _cost(f.alone, said.ITERATIVE), "fabrik")
     return not ahead, (
-        f"From one start fabrik reaches {fabrik.success:.0f} % in {_micro(fabrik):.0f} µs; better in both are "
+        f"From one start fabrik reaches {fabrik.success:.0f} % in {_micro(fabrik):.0f} µs; as good and quicker are "
         f"{', '.join(ahead) or 'none'}. It does positions only, on chains of hinges only."
     )
 
 
 def _inferior(f: Figures) -> tuple[bool, str]:
     """Thesis 4.2: FTL and CCD are variations of the others or inferior to them."""
-    names = ("fabrik", "ftl", "ccd", "lm")
-    found = {name: _pick(f.alone, name, "position") for name in names}
-    best = max(found["fabrik"].success, found["lm"].success)
-    chance = 2.0 * math.sqrt(2.0 * best * (100.0 - best) / len(found["fabrik"].solved))  # two standard deviations [%]
-    better = [name for name in ("ftl", "ccd") if found[name].success > best + chance]
+    found = {name: _pick(f.alone, name, "position") for name in (*said.SHOWN, "ftl", "ccd")}
+    of = len(found["fabrik"].solved)
+    better, more = said.clearly_better({name: float(o.solved.sum()) for name, o in found.items()}, of)
+    chance = 100.0 * more / of
     told = ", ".join(f"{name} {o.success:.0f} % in {_micro(o):.0f} µs" for name, o in found.items())
     return not better, f"From one start on the NAO arm: {told}; up to {chance:.0f} % would be chance."
 

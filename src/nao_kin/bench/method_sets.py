@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import nao_kin as nk
-from nao_kin.bench.edge_targets import farthest, near_full_reach
+from nao_kin.bench.bench_edges import farthest, near_full_reach
 from nao_kin.bench.measuring import timed, undisturbed
 from nao_kin.bench.referee import Referee
 from nao_kin.chain import random_configurations

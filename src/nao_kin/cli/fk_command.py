@@ -38,6 +38,8 @@ def fk(
     data = pose_data(which, q)
     if jacobian:
         data["jacobian"] = which.jacobian(q)
+    limits = ("lower", "upper", "max_velocity")
+    data["limits"] = {joint.name: {what: getattr(joint, what) for what in limits} for joint in which.joints}
     outside = outside_limits(which, q)
     data["outside_limits"] = [str(joint) for joint in outside]
     data["documents"] = [pose_data(table, q) for table in _documents(which)]
@@ -45,7 +47,7 @@ def fk(
         report_json(data)
         return
     title = f"{which.name}: {which.base_name} → {which.tip_name}"
-    report(joint_table(which, q, title), "", _poses_table([data, *data["documents"]]))
+    report(joint_table(which, q, title, limits=True), "", _poses_table([data, *data["documents"]]))
     report("", "T_base_tip", rows_of_numbers(data["T"]))
     if outside:
         report("", *(f"Outside its limits: {joint}." for joint in outside))

@@ -18,11 +18,9 @@ import pinocchio as pin
 
 from nao_kin.chain import (
     ChainJoint,
+    FlatChain,
     JacobianFrame,
-    JointColumns,
     LimitRule,
-    compiled_jacobians,
-    compiled_poses,
     configuration,
 )
 from nao_kin.dh.dh_row import (
@@ -55,7 +53,7 @@ __all__ = ["Convention", "DHChain", "DHRow"]
 
 
 @dataclass(frozen=True, eq=False)
-class DHChain(JointColumns):
+class DHChain(FlatChain):
     """A chain given by a DH table: T_base_tip = base · A_1(q_1) … A_n(q_n) · tool.
 
     Implements the `nao_kin.chain.Chain` protocol by plain matrix products, without any model.
@@ -258,22 +256,6 @@ class DHChain(JointColumns):
             joints.append(PathJoint(before @ placement, axis, row.kind == "prismatic", column, float(row.sign)))
             before = after
         return joint_path(joints, before @ self.tool.homogeneous, self.lower, self.upper)
-
-    def poses(self, Q: ArrayLike) -> Floats:
-        """T_base_tip (N, 4, 4) for configurations (N, n).
-
-        Raises:
-            InvalidInputError: Wrong shape or not finite.
-        """
-        return compiled_poses(self, Q)
-
-    def jacobians(self, Q: ArrayLike) -> Floats:
-        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
-
-        Raises:
-            InvalidInputError: Wrong shape or not finite.
-        """
-        return compiled_jacobians(self, Q)
 
     def _frames(self, q: Floats) -> Floats:
         """The base and the n frames of the table in the base frame, (n + 1, 4, 4)."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
+from nao_kin.chain import MovingKind
 from nao_kin.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class DHRow:
     theta: float
     sign: int = 1
     name: str = ""
-    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
+    kind: MovingKind = "revolute"
     lower: float = -math.inf
     upper: float = math.inf
     max_velocity: float = math.inf
@@ -78,7 +79,7 @@ class DHRow:
         object.__setattr__(self, "sign", int(self.sign))
         if not isinstance(self.name, str):
             raise InvalidInputError("row, name", "text", repr(self.name))
-        if self.kind not in ("revolute", "continuous", "prismatic"):
+        if self.kind not in get_args(MovingKind):
             raise InvalidInputError(f"{what}, kind", "'revolute', 'continuous' or 'prismatic'", repr(self.kind))
         lower, upper = _number(self.lower, f"{what}, lower"), _number(self.upper, f"{what}, upper")
         if not lower <= upper:
@@ -92,7 +93,10 @@ class DHRow:
 def _number(value: object, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
         raise InvalidInputError(what, "a number", repr(value))
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidInputError(what, "a number", "one of too many digits") from None
 
 
 def dh_matrix(row: DHRow, q: float, convention: Convention) -> Floats:

@@ -13,7 +13,8 @@ from nao_kin.dh.dh_chain import DHChain
 from nao_kin.dh.dh_row import Convention, DHRow, known_convention
 from nao_kin.dh.joint_lines import Normals, joint_lines, normals
 from nao_kin.errors import InvalidInputError
-from nao_kin.se3 import position_distance, rotation_distance
+from nao_kin.kernels.joint_path import homogeneous
+from nao_kin.se3 import nearest_rotation, position_distance, rotation_distance
 from nao_kin.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -84,9 +85,7 @@ def _frames(found: Normals, directions: Floats) -> list[Floats]:
 
 
 def _frame(x: Floats, z: Floats, origin: Floats) -> Floats:
-    T = np.eye(4)
-    T[:3, 0], T[:3, 1], T[:3, 2], T[:3, 3] = x, np.cross(z, x), z, origin
-    return T
+    return homogeneous(np.column_stack([x, np.cross(z, x), z]), origin)
 
 
 def _base(first: Floats) -> Floats:
@@ -129,8 +128,8 @@ def _snapped_angle(value: float) -> float:
 
 def _rigid(T: Floats) -> pin.SE3:
     """A product of rigid matrices without the rounding of its rotation part."""
-    U, _, Vt = np.linalg.svd(T[:3, :3])
-    R = np.where(np.abs(T[:3, :3] - np.round(T[:3, :3])) <= _SNAP, np.round(T[:3, :3]), U @ Vt)
+    rounded = np.round(T[:3, :3])
+    R = np.where(np.abs(T[:3, :3] - rounded) <= _SNAP, rounded, nearest_rotation(T[:3, :3]))
     return pin.SE3(R + 0.0, T[:3, 3] + 0.0)
 
 

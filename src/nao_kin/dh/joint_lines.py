@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
+from nao_kin.kernels.joint_path import along_z, homogeneous
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
@@ -61,11 +62,11 @@ def joint_lines(path: JointPath, name: str) -> JointLines:
         raise InvalidInputError(f"{name}", "a chain in which every joint has a value of its own", got)
     T, points, directions = np.eye(4), [], []
     for k in range(n):
-        T = T @ _homogeneous(path.rotations[k], path.translations[k])
+        T = T @ homogeneous(path.rotations[k], path.translations[k])
         points.append(T[:3, 3])
         directions.append(path.multipliers[k] * T[:3, 2])
-        T = T @ _moved(path.offsets[k], bool(path.prismatic[k]))
-    tip = T @ _homogeneous(path.tool_rotation, path.tool_translation)
+        T = T @ along_z(path.offsets[k], slides=bool(path.prismatic[k]))
+    tip = T @ homogeneous(path.tool_rotation, path.tool_translation)
     return JointLines(np.array(points), np.array(directions), path.prismatic.astype(bool), tip)
 
 
@@ -189,19 +190,3 @@ def _any_across(direction: Floats) -> Floats:
 def _angle(start: Floats, end: Floats, about: Floats) -> float:
     """Angle from start to end [rad], both across `about`, right-handed."""
     return math.atan2(float(np.dot(np.cross(start, end), about)), float(np.dot(start, end)))
-
-
-def _homogeneous(R: Floats, p: Floats) -> Floats:
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, p
-    return T
-
-
-def _moved(value: float, slides: bool) -> Floats:
-    T = np.eye(4)
-    if slides:
-        T[2, 3] = value
-    else:
-        c, s = math.cos(value), math.sin(value)
-        T[:2, :2] = [[c, -s], [s, c]]
-    return T

@@ -8,12 +8,13 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from nao_kin.arrays import vector
-from nao_kin.dh.dh_row import as_row
+from nao_kin.chain import MovingKind
+from nao_kin.dh.dh_row import PER_METRE, PER_RADIAN, Convention, as_row
 from nao_kin.errors import InvalidInputError, TableFileError
 from nao_kin.se3 import as_pose, from_xyz_rpy
 from nao_kin.toml_file import TomlFile
@@ -30,7 +31,7 @@ _HUGE = 1e300  # TOML has integers that no float holds
 _TOP_KEYS = ("name", "convention", "lengths", "angles", "base_name", "tip_name", "base", "tool", "joint")
 _NUMBERS = ("a", "alpha", "d", "theta")
 _ROW_KEYS = ("name", *_NUMBERS, "sign", "kind", "limits", "max_velocity")
-_UNITS = {"lengths": ("m", "mm"), "angles": ("rad", "deg"), "convention": ("standard", "modified")}
+_CHOICES = {"lengths": tuple(PER_METRE), "angles": tuple(PER_RADIAN), "convention": get_args(Convention)}
 
 
 def read_table_file(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -62,7 +63,7 @@ class _Reader:
         self.known_keys(data, _TOP_KEYS, "", 0)
         if "convention" not in data:
             raise self.error("", 0, "", "convention is missing: 'standard' (Rz Tz Tx Rx) or 'modified' (Rx Tx Rz Tz).")
-        for key, allowed in _UNITS.items():
+        for key, allowed in _CHOICES.items():
             if key in data and data[key] not in allowed:
                 raise self.error("", 0, key, f"{key}: expected {' or '.join(allowed)}, got {data[key]!r}.")
         texts: dict[str, Any] = {key: self.text(data, key) for key in ("name", "base_name", "tip_name") if key in data}
@@ -72,7 +73,7 @@ class _Reader:
             raise self.error("", 0, "joint", "expected at least one [[joint]] table.")
         return {
             **texts,
-            **{key: data[key] for key in _UNITS if key in data},
+            **{key: data[key] for key in _CHOICES if key in data},
             **{key: self.pose(data[key], key, angles) for key in ("base", "tool") if key in data},
             "rows": [self.row(joint, number, angles == "deg") for number, joint in enumerate(joints, start=1)],
         }
@@ -98,7 +99,7 @@ class _Reader:
             row["max_velocity"] = self.number(joint["max_velocity"], "joint", number, "max_velocity")
         if joint.get("sign", 1) not in (1, -1):
             raise self.error("joint", number, "sign", f"sign: expected 1 or -1, got {joint['sign']!r}.")
-        kinds = ("revolute", "continuous", "prismatic")
+        kinds = get_args(MovingKind)
         if joint.get("kind", "revolute") not in kinds:
             raise self.error("joint", number, "kind", f"kind: expected {' or '.join(kinds)}, got {joint['kind']!r}.")
         if not isinstance(joint.get("name", ""), str):

@@ -1,1 +1,1 @@
-"""The chains of the source documents, as printed: one module a document, and the list of them all."""
+"""The four source documents as printed, the ledger that runs and judges them, and their chains by name."""

@@ -43,19 +43,27 @@ _KOFINAS = "Kofinas et al., NAOKinematics library"
 
 DOCUMENT_CHAINS: Final[dict[str, DocumentChain]] = {
     "thesis_left_arm": DocumentChain(
-        ("thesis", "left_arm"), "nao_v50_h21", "torso", "LArm", "Bischoff 2016, Table 3 and (3.1.0.1)"
+        ("thesis.thesis_arms", "left_arm"), "nao_v50_h21", "torso", "LArm", "Bischoff 2016, Table 3 and (3.1.0.1)"
     ),
     "thesis_right_arm": DocumentChain(
-        ("thesis", "right_arm"), "nao_v50_h21", "torso", "RArm", "Bischoff 2016, Table 4 and (3.1.0.2)"
+        ("thesis.thesis_arms", "right_arm"), "nao_v50_h21", "torso", "RArm", "Bischoff 2016, Table 4 and (3.1.0.2)"
     ),
     "matlab_head": DocumentChain(
-        ("matlab_head", "head"), "nao_v33_h25", "torso", "CameraTop_frame", "MATLAB example, getKinematicChain('head')"
+        ("matlab.head_example", "head"),
+        "nao_v33_h25",
+        "torso",
+        "CameraTop_frame",
+        "MATLAB example, getKinematicChain('head')",
     ),
     "matlab_left_hand": DocumentChain(
-        ("matlab_head", "left_hand"), "nao_v33_h21", "torso", "LArm", "MATLAB example, getKinematicChain('lefthand')"
+        ("matlab.head_example", "left_hand"),
+        "nao_v33_h21",
+        "torso",
+        "LArm",
+        "MATLAB example, getKinematicChain('lefthand')",
     ),
     "practicum_jaco2": DocumentChain(
-        ("practicum", "jaco2"), "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
+        ("practicum.sheet", "jaco2"), "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
     ),
     "kofinas_head": DocumentChain(("kofinas", "head"), "nao_v33_h25", "torso", "Head", _KOFINAS),
     "kofinas_left_arm": DocumentChain(("kofinas", "arm", "left"), "nao_v33_h25", "torso", "LArm", _KOFINAS),

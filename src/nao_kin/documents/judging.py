@@ -20,28 +20,25 @@ __all__ = ["Ledger", "claims", "ledger"]
 
 _MODULES: Final = (
     # 000, Bischoff 2016
-    "thesis_transforms",
-    "thesis_denavit",
-    "thesis_tables",
-    "thesis_chains",
-    "thesis_jacobian_claims",
-    "thesis_inverse_left",
-    "thesis_inverse_right",
-    "thesis_fabrik_claims",
-    "thesis_fabrik_arm",
-    "thesis_comparison_claims",
+    "thesis.coordinate_transforms",
+    "thesis.denavit_hartenberg",
+    "thesis.dimensions",
+    "thesis.printed_chains",
+    "thesis.jacobian_methods",
+    "thesis.closed_form_claims",
+    "thesis.fabrik_algorithm",
+    "thesis.methods_compared",
     # 001, practicum
-    "practicum_check_claims",
-    "practicum_newton_claims",
-    "practicum_inverse_claims",
-    "practicum_profile_claims",
-    "practicum_short_claims",
+    "practicum.check_matrix",
+    "practicum.newtons_method",
+    "practicum.inverse_jacobians",
+    "practicum.line_profile",
     # 002, hexapod article
-    "hexapod_claims",
+    "hexapod.hexapod_article",
     # 004, MATLAB example
-    "matlab_matrix_claims",
-    "matlab_solution_claims",
-    "matlab_chain_claims",
+    "matlab.chain_matrices",
+    "matlab.head_solutions",
+    "matlab.left_hand_chain",
 )
 """Modules of this package with a tuple `CLAIMS` each, in the order of the documents."""
 

@@ -13,6 +13,7 @@ import inspect
 import itertools
 import textwrap
 import threading
+from collections import Counter
 from contextlib import contextmanager
 from dataclasses import dataclass
 from signal import ITIMER_REAL, SIGALRM, setitimer, signal
@@ -52,25 +53,37 @@ _BETWEEN: Final = "any bound between rounding and the distance of two solutions 
 _EVEN: Final = "a cosine or a square, which has no sign of its argument"
 
 EQUIVALENT: Final[dict[tuple[str, str], str]] = {
-    ("000:2.2.2.5", "3:11 factors swapped"): "a rotation about z and a shift along it commute",
-    ("000:3.1.0.1", "3:11 factors swapped"): "A_4^5, which the table lacks, is the unit matrix",
-    ("000:3.3.0.6", "3:68 − → +"): _EVEN,
-    ("000:3.3.0.6", "4:32 − → +"): _EVEN,
-    ("000:3.3.0.6", "4:44 Sub → Add"): _EVEN,
-    ("000:3.3.0.6", "4:69 − → +"): _EVEN,
-    ("000:3.3.0.6", "4:86 − → +"): _EVEN,
-    ("000:3.3.0.7", "3:30 Mult → Div"): "the sine is ±1 where the formula is meant",
-    ("000:3.3.0.9", "3:43 − → +"): "half a turn is the same both ways",
-    ("000:3.3.0.11", "3:12 Sub → Add"): "this copy is the correction",
-    ("000:3.3.0.14", "4:43 Add → Sub"): _EVEN,
-    ("000:3.3.0.15", "3:30 Mult → Div"): "the sine is ±1 where the formula is meant",
-    ("001:task-1b", "4:24 0.41 → 0.4141"): "rounds to the two decimals that are printed",
-    ("004:head-chain", "3:11 factors swapped"): "a rotation about z and a shift along it commute",
-    ("004:theta_1-row-6", "3:13 0 → 0.01"): "where the row stands every yaw is a solution",
-    ("004:4-two-solutions", "12:79 Mult → Div"): _BETWEEN,
-    ("004:4-two-solutions", "12:64 100 → 101"): _BETWEEN,
-    ("004:4-two-solutions", "12:70 2.2e-16 → 2.222e-16"): _BETWEEN,
-    ("004:4-two-solutions", "12:79 1e-06 → 1.01e-06"): _BETWEEN,
+    (
+        "000:2.2.2.5",
+        "factors swapped in eq_2_2_2_1(d) @ eq_2_2_2_2(t)",
+    ): "a rotation about z and a shift along it commute",
+    (
+        "000:3.1.0.1",
+        "factors swapped in T_basis @ A[0] @ A[1] @ A[2] @ A[3] @ A[4]",
+    ): "A_4^5, which the table lacks, is the unit matrix",
+    ("000:3.3.0.6", "− → + in -t_3"): _EVEN,
+    ("000:3.3.0.6", "− → + in -t_3 #2"): _EVEN,
+    ("000:3.3.0.6", "Sub → Add in t_2 - pi / 2 #2"): _EVEN,
+    ("000:3.3.0.6", "− → + in -t_3 #5"): _EVEN,
+    ("000:3.3.0.6", "− → + in -t_3 #4"): _EVEN,
+    ("000:3.3.0.7", "Mult → Div in cos(t_2 - pi / 2) * sin(-t_3)"): "the sine is ±1 where the formula is meant",
+    ("000:3.3.0.9", "− → + in -pi"): "half a turn is the same both ways",
+    (
+        "000:3.3.0.11",
+        "Sub → Add in -A[1, 3] - l_1 - l_4 * sin(t_4) * A[1, 1] / cos(t_4)",
+    ): "this copy is the correction",
+    ("000:3.3.0.14", "Add → Sub in t_2 + pi / 2 #2"): _EVEN,
+    ("000:3.3.0.15", "Mult → Div in cos(t_2 + pi / 2) * sin(t_3)"): "the sine is ±1 where the formula is meant",
+    ("001:task-1b", "0.41 → 0.4141"): "rounds to the two decimals that are printed",
+    (
+        "004:head-chain",
+        "factors swapped in a_base_0(NeckOffsetZ) @ t_01(theta_1)",
+    ): "a rotation about z and a shift along it commute",
+    ("004:theta_1-row-6", "0 → 0.01"): "where the row stands every yaw is a solution",
+    ("004:4-two-solutions", "Mult → Div in 1e-06 * abs(y_known)"): _BETWEEN,
+    ("004:4-two-solutions", "100 → 101"): _BETWEEN,
+    ("004:4-two-solutions", "2.2e-16 → 2.222e-16"): _BETWEEN,
+    ("004:4-two-solutions", "1e-06 → 1.01e-06"): _BETWEEN,
 }
 """Why a copy that survives is no misprint: by claim and change."""
 
@@ -81,7 +94,8 @@ class Mutant:
 
     Attributes:
         claim: Whose form it is.
-        change: What was changed, with its place in the form's own lines, for example ``"3:11 Add → Sub"``.
+        change: What was changed and in what, for example ``"Add → Sub in a + b"``; with a number behind it where a form
+            has the same again, in the order of its syntax tree.
         form: The copy.
     """
 
@@ -113,10 +127,13 @@ class Trial:
 def mutants(claim: Claim) -> Iterator[Mutant]:
     """Every spoilt copy of a claim's printed form."""
     source = textwrap.dedent(inspect.getsource(claim.printed))
+    counts = Counter[str]()
     for number in range(len(list(_changes(ast.parse(source))))):
         tree = ast.parse(source)
         change = next(itertools.islice(_changes(tree), number, None))()
-        yield Mutant(claim, change, _compiled(tree, claim.printed))
+        counts[change] += 1
+        again = f" #{counts[change]}" if counts[change] > 1 else ""
+        yield Mutant(claim, change + again, _compiled(tree, claim.printed))
 
 
 def trials_of(claim: Claim) -> tuple[Trial, ...]:
@@ -177,33 +194,33 @@ def _names(tree: ast.Module) -> set[int]:
     return {id(inner) for part in parts if part is not None for inner in ast.walk(part)}
 
 
-def _place(node: Any) -> str:
-    return f"{node.lineno}:{node.col_offset}"
-
-
 def _flip(node: Any) -> str:
-    before, node.op = type(node.op), _OPERATORS[type(node.op)]()
-    return f"{_place(node)} {before.__name__} → {type(node.op).__name__}"
+    before, code = type(node.op), ast.unparse(node)
+    node.op = _OPERATORS[before]()
+    return f"{before.__name__} → {type(node.op).__name__} in {code}"
 
 
 def _swap(node: ast.BinOp) -> str:
+    code = ast.unparse(node)
     node.left, node.right = node.right, node.left
-    return f"{_place(node)} factors swapped"
+    return f"factors swapped in {code}"
 
 
 def _drop_sign(node: ast.UnaryOp) -> str:
+    code = ast.unparse(node)
     node.op = ast.UAdd()
-    return f"{_place(node)} − → +"
+    return f"− → + in {code}"
 
 
 def _negate(node: Any, k: int) -> str:
-    before, node.ops[k] = type(node.ops[k]), _OPERATORS[type(node.ops[k])]()
-    return f"{_place(node)} {before.__name__} → {type(node.ops[k]).__name__}"
+    before, code = type(node.ops[k]), ast.unparse(node)
+    node.ops[k] = _OPERATORS[before]()
+    return f"{before.__name__} → {type(node.ops[k]).__name__} in {code}"
 
 
 def _stretch(node: Any) -> str:
     before, node.value = node.value, node.value * 1.01 or 0.01  # nought has no 1 % of itself
-    return f"{_place(node)} {before:g} → {node.value:g}"
+    return f"{before:g} → {node.value:g}"
 
 
 @contextmanager

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
 
-__all__ = ["JointPath", "PathJoint", "held", "joint_path"]
+__all__ = ["JointPath", "PathJoint", "along_z", "held", "homogeneous", "joint_path"]
 
 
 class JointPath(NamedTuple):
@@ -111,14 +111,14 @@ def held(path: JointPath, values: Mapping[int, float]) -> JointPath:
         raise ValueError(values)
     before, placements = np.eye(4), []
     for k, column in enumerate(path.columns.tolist()):
-        here = before @ _homogeneous(path.rotations[k], path.translations[k])
+        here = before @ homogeneous(path.rotations[k], path.translations[k])
         if column in number:
             placements.append(here)
             before = np.eye(4)
         else:
             value = path.multipliers[k] * values[column] + path.offsets[k]
-            before = here @ _moved(value, slides=bool(path.prismatic[k]))
-    tool = before @ _homogeneous(path.tool_rotation, path.tool_translation)
+            before = here @ along_z(value, slides=bool(path.prismatic[k]))
+    tool = before @ homogeneous(path.tool_rotation, path.tool_translation)
     return JointPath(
         rotations=np.ascontiguousarray([P[:3, :3] for P in placements]),
         translations=np.ascontiguousarray([P[:3, 3] for P in placements]),
@@ -133,13 +133,14 @@ def held(path: JointPath, values: Mapping[int, float]) -> JointPath:
     )
 
 
-def _homogeneous(R: Floats, t: Floats) -> Floats:
+def homogeneous(R: Floats, t: Floats) -> Floats:
+    """The matrix (4, 4) of a rotation (3, 3) and a translation (3,)."""
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = R, t
     return T
 
 
-def _moved(value: float, *, slides: bool) -> Floats:
+def along_z(value: float, *, slides: bool) -> Floats:
     """Trans_z(value) or Rot_z(value), (4, 4)."""
     T = np.eye(4)
     if slides:

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from nao_kin.chain import ChainJoint
-from nao_kin.robot.path import joint_speed, motor_ranges
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -21,10 +19,9 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.chain import LimitRule
-    from nao_kin.robot.robot import Robot
     from nao_kin.trajectory import Trajectory
 
-__all__ = ["Attempted", "Reason", "Refusal", "motor_joints", "refusal_where", "refusals", "said"]
+__all__ = ["Attempted", "Reason", "Refusal", "refusal_where", "refusals", "said"]
 
 Reason: TypeAlias = Literal[
     "below its range",
@@ -84,22 +81,6 @@ class Attempted:
     def trajectory(self) -> Trajectory | None:
         """The joints over time; None where the motion is refused."""
         return None if self.refused else self.attempt
-
-
-def motor_joints(robot: Robot) -> tuple[ChainJoint, ...]:
-    """The joints of a robot that have a motor, in file order: what a trajectory of the whole robot moves.
-
-    Ranges and speeds are cut down to what their followers allow.
-    """
-    ranges, kinds = motor_ranges(robot), {joint.name: joint for joint in robot.moving_joints}
-    speeds = {name: joint_speed(joint) for name, joint in kinds.items()}
-    for c in robot.couplings:
-        speeds[c.leader] = min(speeds[c.leader], speeds[c.follower] / abs(c.multiplier))
-    return tuple(
-        ChainJoint(name, kind, *ranges[name], speeds[name])
-        for name, joint in kinds.items()
-        if name in ranges and (kind := joint.kind) != "fixed"
-    )
 
 
 def refusals(

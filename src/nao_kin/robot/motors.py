@@ -11,7 +11,7 @@ import numpy as np
 from nao_kin.arrays import Floats, frozen, vector
 from nao_kin.chain import ChainJoint, JointColumns, LimitRule
 from nao_kin.errors import UnknownNameError
-from nao_kin.robot.path import joint_kind, joint_speed, motor_ranges
+from nao_kin.robot.couplings import couplings_on, spread_and_shift
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
 
 if TYPE_CHECKING:
@@ -49,23 +49,11 @@ class Motors(JointColumns):
         Raises:
             InvalidInputError: A follower leaves its leader no value at all.
         """
-        ranges = motor_ranges(robot)
-        names, own = robot.joint_names, list(ranges)
-        spread, shift = np.zeros((len(names), len(own))), np.zeros(len(names))
-        for name in own:
-            spread[names.index(name), own.index(name)] = 1.0
-        for c in robot.couplings:
-            spread[names.index(c.follower), own.index(c.leader)] = c.multiplier
-            shift[names.index(c.follower)] = c.offset
-        speeds = np.array([joint_speed(joint) for joint in robot.moving_joints])
-        moved = np.abs(spread)
-        fastest = np.where(moved > 0.0, speeds[:, None] / np.where(moved > 0.0, moved, 1.0), np.inf).min(axis=0)
-        kinds = {joint.name: joint_kind(joint) for joint in robot.moving_joints}
-        joints = (
-            ChainJoint(name, kinds[name], *ranges[name], max_velocity=speed)
-            for name, speed in zip(own, fastest.tolist(), strict=True)
-        )
-        return cls(robot, tuple(joints), frozen(spread), frozen(shift))
+        names, driven = robot.joint_names, robot.driven_joints
+        couplings = couplings_on(names, robot.couplings)
+        own = [name for name in names if couplings[name].leader == name]
+        spread, shift = spread_and_shift(tuple(couplings.values()), own)
+        return cls(robot, tuple(driven[name] for name in own), frozen(spread), frozen(shift))
 
     @property
     def name(self) -> str:

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.chain import LimitRule, OutsideLimit
+from nao_kin.arrays import finite
+from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, into_limits, limit_texts
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.robot.couplings import Coupling, couplings_of, driven_joints, stated
 from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share
-from nao_kin.robot.path import Coupling, joint_range, motor_ranges
+from nao_kin.robot.motors import Motors
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
 from nao_kin.robot.sources import read_source, tell
 from nao_kin.robot.tree import Tree
@@ -128,19 +130,29 @@ class Robot:
     @cached_property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints that follow another one, each given by the leader that has the motor."""
-        mimics = {joint.name: joint.mimic for joint in self.moving_joints if joint.mimic is not None}
-        found = []
-        for follower, mimic in mimics.items():
-            leader, multiplier, offset = mimic.joint, mimic.multiplier, mimic.offset
-            while leader in mimics:  # the reader has refused cycles
-                above = mimics[leader]
-                leader, multiplier, offset = (
-                    above.joint,
-                    multiplier * above.multiplier,
-                    multiplier * above.offset + offset,
-                )
-            found.append(Coupling(follower, leader, multiplier, offset))
-        return tuple(found)
+        return couplings_of(self.moving_joints)
+
+    @cached_property
+    def driven_joints(self) -> Mapping[str, ChainJoint]:
+        """The moving joints by name, in file order, with the ranges and speeds that they have together.
+
+        A motor goes as far and as fast as all that it moves allow, and a follower as its motor makes it go: where
+        ``f`` follows ``m`` with multiplier −2 and may do 1 rad/s, ``m`` does 0.5 rad/s.
+
+        Raises:
+            InvalidInputError: A follower leaves its leader no value at all.
+        """
+        return driven_joints(self.stated_joints, self.couplings)
+
+    @cached_property
+    def shown_joints(self) -> Mapping[str, ChainJoint]:
+        """The same, but joints that contradict each other keep their ranges, so that the robot can be shown."""
+        return driven_joints(self.stated_joints, self.couplings, contradictory=True)
+
+    @cached_property
+    def stated_joints(self) -> tuple[ChainJoint, ...]:
+        """The moving joints as the file states them, each by itself, in file order."""
+        return tuple(map(stated, self.moving_joints))
 
     @cached_property
     def neutral(self) -> dict[str, float]:
@@ -149,11 +161,9 @@ class Robot:
         Raises:
             InvalidInputError: A follower's range excludes its leader's.
         """
-        posture = {name: _clamp(0.0, *ends) for name, ends in motor_ranges(self).items()}
-        for rule in self.limit_rules:
-            if rule.joint in posture and rule.by in posture:
-                posture[rule.joint] = _clamp(posture[rule.joint], *rule.range(posture[rule.by]))
-        return self.expand(posture)
+        motors = Motors.of(self)
+        q = into_limits(motors, np.zeros(len(motors.joints)))
+        return self.expand(dict(zip(motors.joint_names, q.tolist(), strict=True)))
 
     def expand(self, posture: Mapping[str, float]) -> dict[str, float]:
         """The posture of every moving joint: what is not named is at 0, followers go with their leaders.
@@ -170,7 +180,7 @@ class Robot:
         for name, value in posture.items():
             if name not in self._moving_by_name:
                 raise UnknownNameError("moving joint", name, self.joint_names, self.name)
-            given[name] = _number(value, name)
+            given[name] = finite(value, f"posture, {name}", "[rad or m]")
         values = {name: given.get(name, 0.0) for name in self.joint_names}
         for c in self.couplings:
             if c.follower in given and c.leader not in given:
@@ -201,7 +211,13 @@ class Robot:
             UnknownNameError, InvalidInputError: See `expand`.
         """
         values = self.expand(posture)
-        ranges = [(joint.name, *joint_range(joint)) for joint in self.moving_joints]
+        # A follower at its end is not outside for the rounding of its leader's range: the motor is looked at, too.
+        together = ((self.shown_joints[joint.name], joint) for joint in self.stated_joints)
+        ranges = [
+            (own.name, own.lower, own.upper)
+            for driven, own in together
+            if not driven.lower <= values[own.name] <= driven.upper
+        ]
         rules = (rule for rule in self.limit_rules if rule.joint in values and rule.by in values)
         ranges += [(rule.joint, *rule.range(values[rule.by])) for rule in rules]
         return tuple(
@@ -310,15 +326,12 @@ class Robot:
         return self.joint_table()._repr_html_()
 
     def joint_table(self) -> Table:
-        """The moving joints with their links, ranges and speeds."""
+        """The moving joints with the ranges and speeds that they have together (see `driven_joints`)."""
         leaders = {c.follower: c.leader for c in self.couplings}
         rows = []
-        for joint in self.moving_joints:
-            lower, upper = joint_range(joint)
-            speed = joint.limit.velocity if joint.limit else None
-            follows = f"{joint.kind}, follows {leaders[joint.name]}" if joint.name in leaders else joint.kind
-            limits = (f"{lower:.4g}", f"{upper:.4g}", "" if speed is None else f"{speed:.4g}")
-            rows.append((joint.name, follows, "m" if joint.kind == "prismatic" else "rad", *limits))
+        for name, joint in self.shown_joints.items():
+            follows = f"{joint.kind}, follows {leaders[name]}" if name in leaders else joint.kind
+            rows.append((name, follows, "m" if joint.kind == "prismatic" else "rad", *limit_texts(joint)))
         numbers = (Column(c, number=True) for c in ("lower [unit]", "upper [unit]", "max speed [unit/s]"))
         columns = (Column("joint"), Column("kind"), Column("unit"), *numbers)
         return Table(columns, tuple(rows), title=f"{self.name}: {len(rows)} moving joints")
@@ -327,19 +340,3 @@ class Robot:
 def _limit_rule(rule: CoupledLimit) -> LimitRule:
     at, lower, upper = zip(*rule.table, strict=True)
     return LimitRule(rule.joint, rule.by, at, lower, upper, even=rule.even)
-
-
-def _clamp(value: float, lower: float, upper: float) -> float:
-    return min(max(value, lower), upper)
-
-
-def _number(value: object, joint: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.floating, np.integer)):
-        raise InvalidInputError(f"posture, {joint}", "a number [rad or m]", repr(value))
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise InvalidInputError(f"posture, {joint}", "a finite number [rad or m]", repr(value)[:60])
-    return number

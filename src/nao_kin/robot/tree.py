@@ -12,7 +12,7 @@ import numpy as np
 from nao_kin.arrays import frozen, rows
 from nao_kin.chain import ChainJoint, JointColumns, LimitRule, configuration, limit_table
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.robot.path import Coupling, couplings_on
+from nao_kin.robot.couplings import couplings_on, spread_and_shift
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -66,12 +66,9 @@ class Tree(JointColumns):
         owners = list(dict.fromkeys(couplings[name].leader for name in names))
         spreads, shifts = {}, {}
         for tip, chain in by_tip.items():
-            spread = np.zeros((len(chain.joints), len(owners)))
-            for row, name in enumerate(chain.joint_names):
-                spread[row, owners.index(couplings[name].leader)] = couplings[name].multiplier
-            spreads[tip] = frozen(spread)
-            shifts[tip] = frozen(np.array([couplings[name].offset for name in chain.joint_names]))
-        return cls(by_tip, _joined(by_tip.values(), owners, couplings), robot, spreads, shifts)
+            spread, shift = spread_and_shift([couplings[name] for name in chain.joint_names], owners)
+            spreads[tip], shifts[tip] = frozen(spread), frozen(shift)
+        return cls(by_tip, _joined(by_tip.values(), owners), robot, spreads, shifts)
 
     @property
     def name(self) -> str:
@@ -190,28 +187,23 @@ def _common_robot(chains: Iterable[Chain]) -> Robot | None:
     return found
 
 
-def _joined(
-    chains: Iterable[Chain], owners: Sequence[str], couplings: Mapping[str, Coupling]
-) -> tuple[ChainJoint, ...]:
-    """The joint of each owner: what all chains that have it allow, at a speed that all joints it moves can follow."""
-    every = [joint for chain in chains for joint in chain.joints]
+def _joined(chains: Iterable[Chain], owners: Sequence[str]) -> tuple[ChainJoint, ...]:
+    """The joint of each owner: what all chains that have it allow.
+
+    A robot's chains have looked at what else its motor moves, on any path.
+    """
     found: dict[str, ChainJoint] = {}
-    for joint in every:
-        if joint.name in owners:
-            found[joint.name] = _narrowed(found.get(joint.name, joint), joint)
-    for joint in every:  # the range of a follower is its leader's, mapped by the chain; back again it would be rounded
-        c = couplings[joint.name]
-        speed = min(found[c.leader].max_velocity, joint.max_velocity / abs(c.multiplier))
-        found[c.leader] = replace(found[c.leader], max_velocity=speed)
+    for joint in (joint for chain in chains for joint in chain.joints):
+        found[joint.name] = _narrowed(found.get(joint.name, joint), joint)
     return tuple(found[name] for name in owners)
 
 
 def _narrowed(joint: ChainJoint, again: ChainJoint) -> ChainJoint:
-    """A joint with the range that two chains allow."""
+    """A joint with the range and the speed that two chains allow."""
     if joint.kind != again.kind:
         raise InvalidInputError(f"joint {joint.name}", "one kind in all chains", f"{joint.kind} and {again.kind}")
     lower, upper = max(joint.lower, again.lower), min(joint.upper, again.upper)
     if lower > upper:
         got = f"[{joint.lower:.6g}, {joint.upper:.6g}] and [{again.lower:.6g}, {again.upper:.6g}]"
         raise InvalidInputError(f"joint {joint.name}", "ranges with a value in common", got)
-    return replace(joint, lower=lower, upper=upper)
+    return replace(joint, lower=lower, upper=upper, max_velocity=min(joint.max_velocity, again.max_velocity))

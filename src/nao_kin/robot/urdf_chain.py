@@ -15,17 +15,16 @@ import pinocchio as pin
 
 from nao_kin.chain import (
     ChainJoint,
+    FlatChain,
     JacobianFrame,
     LimitRule,
-    compiled_jacobians,
-    compiled_poses,
     configuration,
     limit_table,
-    stacked_limits,
 )
 from nao_kin.errors import InvalidInputError, NoPathError, UrdfError
 from nao_kin.kernels.joint_path import JointPath, joint_path
-from nao_kin.robot.path import Step, chain_joints, walk
+from nao_kin.robot.couplings import spread_and_shift
+from nao_kin.robot.path import PathStep, walk
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -49,7 +48,7 @@ _FLOAT64 = np.dtype(np.float64)
 _REFERENCE = {"base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED, "tip": pin.ReferenceFrame.LOCAL}
 
 
-class UrdfChain:
+class UrdfChain(FlatChain):
     """A path through a robot, on a Pinocchio model of its own that is rooted at the base and holds the path only.
 
     The path may run up the tree and down again: a joint met from its child's side turns the other way. A coupled joint
@@ -62,20 +61,15 @@ class UrdfChain:
         if not steps:
             raise NoPathError(base, tip, robot.name)
         _refuse_swapped_limits(robot, steps)
-        self._steps, self._joints = steps, chain_joints(robot, steps)
-        self._lower, self._upper, self._max_velocity = stacked_limits(self._joints)
-        names = set(self.joint_names)
-        self._limit_rules = tuple(r for r in robot.limit_rules if r.joint in names and r.by in names)
+        own = [step.joint.name for step in steps if step.coupling.leader == step.joint.name]
+        self._steps, self._joints = steps, tuple(robot.driven_joints[name] for name in own)
+        self._limit_rules = tuple(rule for rule in robot.limit_rules if rule.joint in own and rule.by in own)
         self._model, self._link_ids, self._tip_id = _serial_model(steps, self._T_joint_tip)
         self._workspace = _Workspace(self._model)
         self._shape, self._zeros = (len(self._joints),), np.zeros(len(self._joints))
         # Values of the physical joints: spread · q + shift. None where each joint has a column of its own.
-        self._spread: Floats | None = None
-        if any(step.follows for step in steps):
-            self._spread = np.zeros((len(steps), len(self._joints)))
-            for k, step in enumerate(steps):
-                self._spread[k, step.column] = step.multiplier
-        self._shift = np.array([step.offset for step in steps])
+        spread, self._shift = spread_and_shift([step.coupling for step in steps], own)
+        self._spread: Floats | None = None if len(own) == len(steps) else spread
 
     @property
     def robot(self) -> Robot:
@@ -113,29 +107,9 @@ class UrdfChain:
         return self._joints
 
     @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Their names."""
-        return tuple(joint.name for joint in self._joints)
-
-    @property
     def path_joint_names(self) -> tuple[str, ...]:
         """Names of the m physical joints of the path, followers included; `link_poses` has a row for each."""
         return tuple(step.joint.name for step in self._steps)
-
-    @property
-    def lower(self) -> Floats:
-        """Least values (n,), read-only; −inf for a continuous joint."""
-        return self._lower
-
-    @property
-    def upper(self) -> Floats:
-        """Greatest values (n,), read-only; +inf for a continuous joint."""
-        return self._upper
-
-    @property
-    def max_velocity(self) -> Floats:
-        """Greatest speeds (n,) [rad/s or m/s], read-only."""
-        return self._max_velocity
 
     @property
     def limit_rules(self) -> tuple[LimitRule, ...]:
@@ -199,23 +173,7 @@ class UrdfChain:
     def joint_path(self) -> JointPath:
         """The flat form that compiled code runs on."""
         flat = (step.flat for step in self._steps)
-        return joint_path(flat, self._T_joint_tip.homogeneous, self._lower, self._upper)
-
-    def poses(self, Q: ArrayLike) -> Floats:
-        """T_base_tip (N, 4, 4) for configurations (N, n).
-
-        Raises:
-            InvalidInputError: Wrong shape or not finite.
-        """
-        return compiled_poses(self, Q)
-
-    def jacobians(self, Q: ArrayLike) -> Floats:
-        """Frame Jacobians (N, 6, n), base axes, for configurations (N, n).
-
-        Raises:
-            InvalidInputError: Wrong shape or not finite.
-        """
-        return compiled_jacobians(self, Q)
+        return joint_path(flat, self._T_joint_tip.homogeneous, self.lower, self.upper)
 
     def _joint_values(self, q: ArrayLike) -> Floats:
         # What numpy needs to check a vector costs more than the kinematics, so the usual case is decided by hand: the
@@ -236,7 +194,7 @@ class UrdfChain:
         return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
 
 
-def _refuse_swapped_limits(robot: Robot, steps: Sequence[Step]) -> None:
+def _refuse_swapped_limits(robot: Robot, steps: Sequence[PathStep]) -> None:
     """A joint without a single allowed value is nobody's concern until a chain moves it."""
     for step in steps:
         limit = step.joint.limit
@@ -246,7 +204,7 @@ def _refuse_swapped_limits(robot: Robot, steps: Sequence[Step]) -> None:
             raise UrdfError(robot.document.path, limit.line, reason, "Are they swapped?", code="inverted-limit")
 
 
-def _serial_model(steps: Sequence[Step], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
+def _serial_model(steps: Sequence[PathStep], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:
     """The path as a Pinocchio model rooted at its base, the frame ids of the links behind its joints, and the tip's.
 
     Continuous joints become revolute ones, so every joint takes one number.

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from nao_kin.errors import InvalidInputError
-from nao_kin.robot.path import joint_range, joint_speed, motor_ranges
 from nao_kin.se3 import from_xyz_rpy
 from nao_kin.view.limbs import legs_of, limbs, main_tip
 from nao_kin.view.meshes import Triangulator
@@ -20,7 +17,6 @@ if TYPE_CHECKING:
     from nao_kin.robot.robot import Robot
     from nao_kin.urdf.document import UrdfDocument
     from nao_kin.urdf.elements import Origin, Shape, Solid, UrdfJoint
-    from nao_kin.view.scene import MovingKind
 
 __all__ = ["robot_scene"]
 
@@ -96,20 +92,10 @@ def _tree(document: UrdfDocument) -> list[tuple[str, UrdfJoint | None, int | Non
 
 
 def _joints(robot: Robot, values: Mapping[str, float]) -> tuple[SceneJoint, ...]:
-    couplings = {c.follower: c for c in robot.couplings}
-    try:
-        ranges = motor_ranges(robot)
-    except InvalidInputError:  # ranges that exclude each other; a posture can be shown all the same
-        ranges = {joint.name: joint_range(joint) for joint in robot.moving_joints}
-    found = []
-    for joint in robot.moving_joints:
-        c = couplings.get(joint.name)
-        lower, upper = ranges.get(joint.name, (-math.inf, math.inf))
-        if c is not None:
-            lower, upper = sorted(c.multiplier * end + c.offset for end in ranges[c.leader])
-        plain = SceneJoint(
-            joint.name, cast("MovingKind", joint.kind), values[joint.name], lower, upper, joint_speed(joint)
-        )
+    couplings, found = {c.follower: c for c in robot.couplings}, []
+    for name, joint in robot.shown_joints.items():
+        c = couplings.get(name)
+        plain = SceneJoint(name, joint.kind, values[name], joint.lower, joint.upper, joint.max_velocity)
         found.append(plain if c is None else replace(plain, leader=c.leader, multiplier=c.multiplier, offset=c.offset))
     return tuple(found)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
-    from nao_kin.chain import LimitRule
+    from nao_kin.chain import LimitRule, MovingKind
     from nao_kin.urdf.elements import Colour
     from nao_kin.view.meshes import Mesh
 
@@ -40,8 +40,6 @@ __all__ = [
     "local_pose",
     "world_poses",
 ]
-
-MovingKind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
 
 
 @dataclass(frozen=True, slots=True)

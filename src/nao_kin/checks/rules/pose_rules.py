@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from nao_kin.robot.path import joint_range
+from nao_kin.robot.couplings import contradictions
 from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import Defect, describe, first, shown
 
@@ -32,29 +32,21 @@ _POSTURES = 8
 def coupled_ranges(subject: Subject) -> Iterator[Defect]:
     """A follower leaves its leader a value at which both are within their limits."""
     robot = subject.robot
-    ranges = {joint.name: joint_range(joint) for joint in robot.moving_joints}
-    for c in robot.couplings:
-        ends = sorted((end - c.offset) / c.multiplier for end in ranges[c.follower])
-        lower, upper = max(ranges[c.leader][0], ends[0]), min(ranges[c.leader][1], ends[1])
-        if lower > upper:
-            joint = subject.joint(c.follower)
-            mimic = first(joint, "mimic")
-            message = (
-                f"The {describe(joint)} follows {shown(c.leader)}, and no value of it keeps both within their limits."
-            )
-            hint = "Check multiplier and offset against the two ranges."
-            yield Defect("coupled-range-empty", joint if mimic is None else mimic, message, hint)
-        else:
-            ranges[c.leader] = lower, upper
+    for c in contradictions(robot.stated_joints, robot.couplings):
+        joint = subject.joint(c.follower)
+        mimic = first(joint, "mimic")
+        message = f"The {describe(joint)} follows {shown(c.leader)}, and no value of it keeps both within their limits."
+        hint = "Check multiplier and offset against the two ranges."
+        yield Defect("coupled-range-empty", joint if mimic is None else mimic, message, hint)
 
 
 def coupled_limits(subject: Subject) -> Iterator[Defect]:
     """The documented ranges that depend on another joint lie inside the file's plain ranges."""
-    joints = {joint.name: joint for joint in subject.robot.moving_joints}
+    joints = {joint.name: joint for joint in subject.robot.stated_joints}
     for rule in subject.robot.limit_rules:
         if rule.joint not in joints or rule.by not in joints:
             continue
-        lower, upper = joint_range(joints[rule.joint])
+        lower, upper = joints[rule.joint].lower, joints[rule.joint].upper
         least, most = min(rule.lower), max(rule.upper)
         ends = ((least, least < lower - _ROUNDING), (most, most > upper + _ROUNDING))
         beyond = [f"{end:g}" for end, outside in ends if outside]
@@ -73,7 +65,8 @@ def sample_postures(robot: Robot, count: int, seed: int = 0) -> list[dict[str, f
     """Postures to try: every joint at 0 if it may, at its lower limit, at its upper one, and random ones."""
     rng = np.random.default_rng(seed)
     followers = {c.follower for c in robot.couplings}
-    ranges = {joint.name: _tried(*joint_range(joint)) for joint in robot.moving_joints if joint.name not in followers}
+    motors = (joint for name, joint in robot.shown_joints.items() if name not in followers)
+    ranges = {joint.name: _tried(joint.lower, joint.upper) for joint in motors}
     ends = [
         {name: min(max(0.0, lower), upper) for name, (lower, upper) in ranges.items()},
         {name: lower for name, (lower, _) in ranges.items()},

@@ -15,7 +15,6 @@ import numpy as np
 from nao_kin.arrays import positive, vector
 from nao_kin.errors import InvalidInputError, KeyframeFileError, UnknownNameError, near_matches
 from nao_kin.robot.known import robot_names
-from nao_kin.robot.path import joint_range
 from nao_kin.robot.robot import Robot, load
 from nao_kin.toml_file import TomlFile
 
@@ -131,8 +130,7 @@ class _Reader:
         if "angles" not in self.data:
             raise self.error("", 0, "", "angles is missing: 'rad' or 'deg'.")
         self.robot = self.named_robot() if robot is None else robot
-        self.kinds = {joint.name: joint.kind for joint in self.robot.moving_joints}
-        self.ranges = {joint.name: joint_range(joint) for joint in self.robot.moving_joints}
+        self.joints = self.robot.shown_joints
 
     def named_robot(self) -> Robot:
         name = self.data.get("robot")
@@ -172,11 +170,11 @@ class _Reader:
         return values
 
     def value(self, section: str, joint: str, given: object) -> float:
-        if joint not in self.kinds:
-            unknown = UnknownNameError("moving joint", joint, self.kinds, self.robot.name)
+        if joint not in self.joints:
+            unknown = UnknownNameError("moving joint", joint, self.joints, self.robot.name)
             raise self.error(section, 1, joint, f"{section}: {unknown}")
         value = self.number(given, section, 1, joint)
-        if self.kinds[joint] != "prismatic":
+        if self.joints[joint].kind != "prismatic":
             value = math.radians(value) if self.data["angles"] == "deg" else value
         elif "lengths" not in self.data:
             raise self.error(
@@ -184,7 +182,7 @@ class _Reader:
             )
         else:
             value *= 1e-3 if self.data["lengths"] == "mm" else 1.0
-        lower, upper = self.ranges[joint]
+        lower, upper = self.joints[joint].lower, self.joints[joint].upper
         if not lower - _ROUNDING <= value <= upper + _ROUNDING:
             reason = f"{joint} = {value:.6g} is outside [{lower:.6g}, {upper:.6g}] (rad, m)."
             raise self.error(section, 1, joint, f"{section}: {reason}")

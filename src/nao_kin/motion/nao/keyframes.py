@@ -16,8 +16,9 @@ import numpy as np
 
 from nao_kin.arrays import frozen
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, refusals, said
 from nao_kin.motion.loop.profile import PEAK, minimum_jerk
+from nao_kin.robot.motors import Motors
 from nao_kin.table import Column, Table
 from nao_kin.trajectory import Trajectory
 
@@ -106,7 +107,7 @@ def play(keyframes: Keyframes, start: Mapping[str, float] | None = None) -> Play
     Raises:
         UnknownNameError, InvalidInputError: A start posture that the robot does not have, or too many samples.
     """
-    robot, joints = keyframes.robot, motor_joints(keyframes.robot)
+    robot, joints = keyframes.robot, Motors.of(keyframes.robot).joints
     asked, Q = _knots(keyframes, joints, start)
     speeds = np.array([joint.max_velocity or np.inf for joint in joints])  # no time would be long enough for 0
     times = asked

@@ -24,8 +24,9 @@ from nao_kin.errors import InvalidInputError
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.reference_loop import Budget
 from nao_kin.ik.single import solve
-from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, refusals, said
 from nao_kin.motion.loop.profile import PEAK, minimum_jerk
+from nao_kin.robot.motors import Motors
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory import Trajectory
 
@@ -265,7 +266,7 @@ def _gesture(
 
     A head that turns to the side and nods would leave the coupled range in between, though both ends are in it.
     """
-    joints = motor_joints(robot)
+    joints = Motors.of(robot).joints
     here, there = (np.array([posture[joint.name] for joint in joints]) for posture in (start, end))
     speeds = np.array([joint.max_velocity for joint in joints])
     if duration is None:

@@ -18,8 +18,9 @@ import numpy as np
 
 from nao_kin.arrays import frozen, vector
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.feasible import Attempted, Refusal, motor_joints, refusal_where, refusals, said
+from nao_kin.motion.feasible import Attempted, Refusal, refusal_where, refusals, said
 from nao_kin.motion.nao.feet import both_feet, wanted_angles
+from nao_kin.robot.motors import Motors
 from nao_kin.se3 import PoseLike, as_pose, rotation_distance, rotation_z
 from nao_kin.tolerances import TOLERANCES, Tolerances
 from nao_kin.trajectory import Trajectory
@@ -118,7 +119,7 @@ def torso_motion(
     start = robot.complete(BENT_KNEES if posture is None else posture)
     base, *soles = frames
     legs, stood = [robot.chain(base, sole) for sole in soles], [robot.pose(start, sole, base) for sole in soles]
-    joints, near = motor_joints(robot), {name: start[name] for leg in legs for name in leg.joint_names}
+    joints, near = Motors.of(robot).joints, {name: start[name] for leg in legs for name in leg.joint_names}
     q, yaw = np.tile([start[joint.name] for joint in joints], (len(wanted), 1)), np.zeros(len(wanted))
     columns = {joint.name: k for k, joint in enumerate(joints)}
     turned = []

@@ -14,6 +14,8 @@ from nao_kin.errors import TrajectoryFileError, near_matches
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from nao_kin.chain import MovingKind
+
 __all__ = ["FORMAT", "Place", "columns_of", "joint_of_column", "joint_of_record", "number_of", "record_of", "repeated"]
 
 FORMAT: Final = "nao_kin trajectory, format 1"
@@ -80,7 +82,7 @@ def joint_of_record(record: object, place: Place) -> ChainJoint:
     if unit != _UNITS[kind]:
         raise place.refused(f"joint {name!r}: a {kind} joint is in {_UNITS[kind]}, not in {_short(unit)}.")
     limits = {key: number_of(record[key], place, f"joint {name!r}, {key}") for key in _LIMITS if key in record}
-    joint = ChainJoint(name, cast('Literal["revolute", "continuous", "prismatic"]', kind), **limits)
+    joint = ChainJoint(name, cast("MovingKind", kind), **limits)
     if joint.lower > joint.upper or joint.max_velocity <= 0.0:
         raise place.refused(f"joint {name!r}: expected lower ≤ upper and max_velocity > 0, got {json.dumps(limits)}.")
     return joint

@@ -1,0 +1,1 @@
+"""The hexapod article (M. Fauth, "Inverse Kinematik", 2010)."""
