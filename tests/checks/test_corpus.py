@@ -23,6 +23,8 @@ SRDF = CORPUS / "srdf"
 SRDF_LINES = lines(SRDF)
 ELSEWHERE = {
     "meshes-not-opened": "test_meshes.py, because its meshes have 65 MB",
+    "xacro-failed": "tests/urdf/test_xacro.py, because the macros need a library",
+    "xacro-refused": "tests/urdf/test_xacro_confined.py",
     **dict.fromkeys(SRDF_LINES, "below: an SRDF has it"),
     "departs-from-table": "test_command.py, because the command line compares",
     "departs-from-model": "test_command.py, because the command line compares",

@@ -6,7 +6,7 @@ import os
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypedDict
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
 from nao_kin.checks.finding import Finding, Report, Severity
@@ -22,17 +22,20 @@ from nao_kin.checks.rules import vocabulary_rules as vocabulary
 from nao_kin.checks.subject import Subject
 from nao_kin.errors import UnknownNameError, UrdfError
 from nao_kin.robot.known import KNOWN_ROBOTS, find_known, robot_file
+from nao_kin.robot.sources import is_path
 from nao_kin.urdf.document import UNREADABLE, read_bytes, read_urdf
 from nao_kin.urdf.outline import Defect, Outline, describe
-from nao_kin.urdf.positions import Positions
+from nao_kin.urdf.positions import Place, Positions
 from nao_kin.urdf.safe_xml import read_tree
 from nao_kin.urdf.structure import STAGES, TOLERATED
+from nao_kin.urdf.xacro import expand_xacro, is_xacro_file
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from nao_kin.checks.subject import Rule
     from nao_kin.urdf.resources import MeshRoots
+    from nao_kin.urdf.xacro import Expansion
 
 __all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
 
@@ -96,6 +99,15 @@ _BREAKS_THE_TREE: Final = frozenset(
 """Defects after which it says nothing about a file that its links are no tree."""
 
 
+class _Options(TypedDict):
+    """What is the same for every kind of file."""
+
+    packages: MeshRoots
+    thorough: bool
+    select: Collection[str]
+    ignore: Collection[str]
+
+
 def check(
     robot: str | os.PathLike[str],
     *,
@@ -104,17 +116,19 @@ def check(
     select: Collection[str] = (),
     ignore: Collection[str] = (),
     urdf: str | os.PathLike[str] | None = None,
+    arguments: Mapping[str, object] | None = None,
 ) -> Report:
     """Check a URDF or SRDF file, by path, or the file of a known robot, by name.
 
     Args:
         robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path. What ends
-            in ``.srdf`` is MoveIt's file beside a URDF.
+            in ``.srdf`` is MoveIt's file beside a URDF, and in ``.xacro`` one of macros, which is expanded first.
         packages: Package folders by name, or folders that hold packages, for ``package://`` in mesh names.
         thorough: Also open every mesh, however many, and hold Pinocchio against yourdfpy at random postures.
         select: Report these codes only; all if empty.
         ignore: Do not report these.
         urdf: The URDF that an SRDF is about; looked for beside it if None.
+        arguments: Values of the ``<xacro:arg>`` of a file of macros.
 
     Returns:
         Every finding with its line, sorted. A file that cannot be parsed is a finding too.
@@ -133,6 +147,13 @@ def check(
             raise
         return _Listing(path, select, ignore).report_refusal(refusal, b"")
     folder = Path(path).absolute().parent
+    if is_xacro_file(path):
+        try:
+            expansion = expand_xacro(path, arguments, packages)
+        except UrdfError as refusal:
+            return _Listing(path, select, ignore).report_refusal(refusal, b"")
+        options: _Options = {"packages": packages, "thorough": thorough, "select": select, "ignore": ignore}
+        return check_bytes(expansion.data, path, folder=folder, expansion=expansion, **options)
     if path.endswith(".srdf"):
         return _check_srdf(data, _Listing(path, select, ignore), folder, urdf)
     return check_bytes(data, path, folder=folder, packages=packages, thorough=thorough, select=select, ignore=ignore)
@@ -147,6 +168,7 @@ def check_bytes(
     thorough: bool = False,
     select: Collection[str] = (),
     ignore: Collection[str] = (),
+    expansion: Expansion | None = None,
 ) -> Report:
     """Check a URDF that is in memory.
 
@@ -158,6 +180,7 @@ def check_bytes(
         thorough: See `check`.
         select: See `check`.
         ignore: See `check`.
+        expansion: The macros that it was expanded from; findings then name their files and lines.
 
     Returns:
         See `check`.
@@ -172,7 +195,7 @@ def check_bytes(
     except UrdfError as refusal:
         return listing.report_refusal(refusal, data)
     known = KNOWN_ROBOTS.get(root.get("name", ""))
-    subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known)
+    subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known, expansion)
     for defects in _examination(subject):
         listing.add(subject, defects)
     return listing.report()
@@ -194,18 +217,26 @@ def _check_srdf(data: bytes, listing: _Listing, folder: Path, urdf: str | os.Pat
 
 def finding_of(subject: Subject, defect: Defect) -> Finding:
     """A defect with its place in the text and the severity that the catalogue gives it."""
-    place = subject.positions.place(defect)
+    place, said = subject.positions.place(defect), defect.message
+    path, source = subject.path, subject.positions.line_text(place.line)
+    line: int | None = place.line
+    if subject.expansion is not None:
+        place, traced = Place(place.line), subject.expansion.place(subject.outline.root, defect)
+        if traced is None:
+            line, said = None, f"{said.rstrip('.')} (line {line} of the expanded file)."
+        else:
+            (path, line), source = traced, subject.expansion.line_text(*traced)
     return Finding(
-        path=subject.path,
-        line=place.line,
+        path=path,
+        line=line,
         column=place.column,
         width=place.width,
         code=defect.code,
         severity=CATALOGUE[defect.code].severity,
         element=describe(defect.at),
-        message=defect.message,
+        message=said,
         hint=defect.hint,
-        source=subject.positions.line_text(place.line),
+        source=source,
     )
 
 
@@ -301,7 +332,7 @@ class _Listing:
         code, severity = refusal.code, CATALOGUE[refusal.code].severity
         if self._wanted(code):
             self.findings.append(
-                Finding(self.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
+                Finding(refusal.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
             )
         return self.report()
 
@@ -311,7 +342,7 @@ class _Listing:
 
 def _path_of(robot: str | os.PathLike[str]) -> str:
     """The path that is meant, by the rule of `nao_kin.load`."""
-    if isinstance(robot, str) and not robot.endswith((".urdf", ".srdf")) and os.sep not in robot:
+    if isinstance(robot, str) and not is_path(robot):
         try:
             return os.fspath(robot_file(find_known(robot)))
         except UnknownNameError:

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import typer
 
+from nao_kin.cli.macro_arguments import for_macros
 from nao_kin.errors import NaoKinError, UrdfWarning
+from nao_kin.robot.sources import reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -51,7 +53,8 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """The command line with these commands; only their modules are imported."""
     app = typer.Typer(
         name="nao-kin",
-        help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages.",
+        help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages. "
+        "Where a robot is a file of xacro, NAME:=VALUE gives its arguments and --package NAME=DIR its packages.",
         no_args_is_help=True,
         invoke_without_command=True,
         add_completion=False,
@@ -84,8 +87,10 @@ def main() -> NoReturn:
     warnings.formatwarning = _plain  # type: ignore[assignment]
     # typer reads every parameter of every command before it runs one, which takes longer than most of them do.
     asked = [word for word in sys.argv[1:2] if word in COMMANDS]
+    words, arguments, packages = for_macros(sys.argv[1:], own_packages=asked == ["check"])
     try:
-        status = application(asked or COMMANDS)(standalone_mode=True)
+        with reading(arguments, packages):
+            status = application(asked or COMMANDS)(words, standalone_mode=True)
     except NaoKinError as error:
         typer.echo(f"nao-kin: {error}", err=True)
         sys.exit(2)

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["check"]
 
 
-_SUFFIXES = {".urdf", ".srdf"}
+# A file of macros by itself is no robot; what ends in .urdf.xacro is meant as one.
+_SUFFIXES = (".urdf", ".srdf", ".urdf.xacro")
 
 
 class CheckFormat(StrEnum):
@@ -34,7 +35,7 @@ class CheckFormat(StrEnum):
     github = "github"
 
 
-_FILES_HELP = "URDF and SRDF files, directories (all below them), globs, names of known robots; - is standard input."
+_FILES_HELP = "URDF, xacro, SRDF files, directories, globs, known robots; NAME:=VALUE for xacro; - is standard input."
 
 
 def check(
@@ -102,12 +103,13 @@ def _checked(path: str, options: _Options, urdf: str | None, held: tuple[str | N
     from nao_kin.checks.checker import check as check_file
     from nao_kin.checks.checker import check_bytes
     from nao_kin.checks.finding import Report
+    from nao_kin.robot.sources import given_arguments
     from nao_kin.urdf import LIMITS
 
     if path == "-":
         data = sys.stdin.buffer.read(LIMITS.file_bytes + 1)
         return check_bytes(data, "<stdin>", **options)
-    found, (table, other) = check_file(path, urdf=urdf, **options), held
+    found, (table, other) = check_file(path, urdf=urdf, arguments=given_arguments(), **options), held
     if (table or other) and found.errors:
         typer.echo(f"nao-kin: {path} was not compared, because of its errors.", err=True)
     elif table or other:
@@ -170,9 +172,9 @@ def _paths(given: list[str]) -> list[str]:
 
 def _expanded(word: str) -> Iterator[str]:
     if os.path.isdir(word):  # noqa: PTH112 - Path raises for long names
-        found = sorted(str(path) for path in Path(word).rglob("*") if path.suffix in _SUFFIXES)
+        found = sorted(str(path) for path in Path(word).rglob("*") if path.name.endswith(_SUFFIXES))
         if not found:
-            raise typer.BadParameter(f"{word}: no .urdf or .srdf file in this directory or below.")
+            raise typer.BadParameter(f"{word}: no .urdf, .urdf.xacro or .srdf file in this directory or below.")
         yield from found
     elif any(sign in word for sign in "*?[") and not os.path.lexists(word):
         found = sorted(path for path in glob.glob(word, recursive=True) if os.path.isfile(path))  # noqa: PTH113, PTH207

@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,34 +30,40 @@ from nao_kin.urdf.writer import UNLIMITED
 
 if TYPE_CHECKING:
     import os
-    from pathlib import Path
 
     from nao_kin.urdf import UrdfDocument
     from nao_kin.urdf.elements import UrdfJoint
+    from nao_kin.urdf.packages import PackageRoots
 
 __all__ = ["Robot", "load"]
 
 
-def load(robot: str | os.PathLike[str]) -> Robot:
-    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF file.
+def load(
+    robot: str | os.PathLike[str], *, arguments: Mapping[str, object] | None = None, packages: PackageRoots = ()
+) -> Robot:
+    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF file or of one of xacro's macros.
 
     Args:
-        robot: Text that ends in ``.urdf`` or contains a path separator is a path; a `pathlib.Path` always is.
+        robot: Text that ends in ``.urdf`` or ``.xacro`` or contains a path separator is a path; a `pathlib.Path` is.
+        arguments: Values of the ``<xacro:arg>`` of a file of macros, as ``{"name": "ur5e"}``.
+        packages: Package folders by name, or folders that hold packages, for ``$(find NAME)`` and ``package://``.
 
     Returns:
         The robot, with named chains and coupled limits if it is a known one.
 
     Raises:
         UnknownNameError: No robot of that name; carries near matches.
-        MissingExtraError: The robot's files come with an optional extra.
+        MissingExtraError: The robot's files come with an optional extra, or it is one of macros and ``xacro`` is not
+            installed.
+        InvalidInputError: Arguments for a file that takes none.
         UrdfError: The file is unreadable, hostile or malformed; carries the line and the reason.
 
     Warns:
         UrdfWarning: The file has mistakes that every reader gets past, as limits with their ends swapped; with lines.
     """
-    document, known = read_source(robot)
+    document, known = read_source(robot, arguments, packages)
     tell(document)
-    return Robot.from_document(document, known)
+    return Robot.from_document(document, known, packages)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +89,12 @@ class Robot:
     mesh_roots: tuple[Path, ...] = ()
 
     @classmethod
-    def from_document(cls, document: UrdfDocument, known: KnownRobot | None = None) -> Robot:
+    def from_document(
+        cls, document: UrdfDocument, known: KnownRobot | None = None, packages: PackageRoots = ()
+    ) -> Robot:
         """A robot from a parsed document, with what is known about it beyond that if it is a known one."""
         roots = [] if document.directory is None else [document.directory]
+        roots += map(Path, packages.values() if isinstance(packages, Mapping) else packages)
         if known is None:
             return cls(name=document.name, document=document, mesh_roots=tuple(roots))
         if known.source == "example-robot-data" and (share := example_robot_data_share()) is not None:

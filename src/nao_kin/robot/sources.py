@@ -4,34 +4,88 @@ from __future__ import annotations
 
 import os
 import warnings
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from nao_kin.errors import UnknownNameError, UrdfWarning
+from nao_kin.errors import InvalidInputError, UnknownNameError, UrdfWarning
 from nao_kin.robot.known import find_known, robot_file
 from nao_kin.urdf import read_urdf
+from nao_kin.urdf.xacro import is_xacro_file, read_xacro
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from nao_kin.robot.known import KnownRobot
     from nao_kin.urdf import UrdfDocument
+    from nao_kin.urdf.packages import PackageRoots
 
-__all__ = ["read_source", "tell"]
+__all__ = ["SUFFIXES", "Reading", "given_arguments", "is_path", "read_source", "reading", "tell"]
+
+SUFFIXES = (".urdf", ".xacro", ".srdf")
+"""Endings by which text is a path, not a name."""
 
 
-def read_source(robot: str | os.PathLike[str]) -> tuple[UrdfDocument, KnownRobot | None]:
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What files of macros are expanded with.
+
+    Attributes:
+        arguments: Values of their ``<xacro:arg>``.
+        packages: Package folders by name, or folders that hold packages.
+    """
+
+    arguments: Mapping[str, object] = field(default_factory=dict)
+    packages: PackageRoots = ()
+
+
+_READING: ContextVar[Reading] = ContextVar("reading")
+
+
+@contextmanager
+def reading(arguments: Mapping[str, object], packages: PackageRoots) -> Iterator[None]:
+    """While it lasts, files of macros are expanded with these unless a caller says otherwise, as one command does."""
+    token = _READING.set(Reading(arguments, packages))
+    try:
+        yield
+    finally:
+        _READING.reset(token)
+
+
+def given_arguments() -> Mapping[str, object]:
+    """The arguments that files of macros are expanded with unless a caller says otherwise."""
+    return _READING.get(Reading()).arguments
+
+
+def is_path(robot: str | os.PathLike[str]) -> bool:
+    """Whether a path is meant and not a name, by the rule of `nao_kin.load`."""
+    return not isinstance(robot, str) or robot.endswith(SUFFIXES) or os.sep in robot
+
+
+def read_source(
+    robot: str | os.PathLike[str], arguments: Mapping[str, object] | None = None, packages: PackageRoots = ()
+) -> tuple[UrdfDocument, KnownRobot | None]:
     """The content of the file that is meant, and the known robot that it belongs to, if it is one.
 
     Raises:
-        UnknownNameError, MissingExtraError, UrdfError: See `nao_kin.load`.
+        UnknownNameError, MissingExtraError, UrdfError, InvalidInputError: See `nao_kin.load`.
     """
-    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
+    path, known = robot, None
+    if not is_path(robot):
         try:
-            known = find_known(robot)
+            known = find_known(os.fspath(robot))
+            path = robot_file(known)
         except UnknownNameError:
-            if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
-                return read_urdf(robot), None
-            raise
-        return read_urdf(robot_file(known)), known
-    return read_urdf(robot), None
+            if not os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
+                raise
+    if is_xacro_file(path):
+        usual = _READING.get(Reading())
+        given = usual.arguments if arguments is None else arguments
+        return read_xacro(path, given, packages or usual.packages), known
+    if arguments:
+        raise InvalidInputError("arguments", "a file of macros (.xacro) that takes them", os.fspath(robot))
+    return read_urdf(path), known
 
 
 def tell(document: UrdfDocument, stacklevel: int = 2) -> None:
