@@ -16,6 +16,7 @@ SCRIPTS = sorted((ROOT / "src").rglob("*.js"))
 _SECTION = "a section of a document: each claim's formula, check and text are one thought"
 
 LONG_FILES: dict[str, str] = {
+    "src/nao_kin/robot/robot.py": "what users hold: every question that a robot answers",
     "src/nao_kin/chain.py": "what any chain is, and the free functions on any of them",
     "src/nao_kin/documents/hexapod/hexapod_article.py": _SECTION,
     "src/nao_kin/documents/matlab/head_solutions.py": _SECTION,

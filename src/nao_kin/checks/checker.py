@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypedDict
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
-from nao_kin.checks.finding import Finding, Report, Severity
+from nao_kin.checks.finding import Report, Severity
+from nao_kin.checks.listing import MOST_OF_A_CODE, Listing, bounded, finding_of
 from nao_kin.checks.rules import control_rules as control
 from nao_kin.checks.rules import figure_rules as figures
 from nao_kin.checks.rules import inertia_rules as inertia
@@ -24,8 +23,8 @@ from nao_kin.errors import UnknownNameError, UrdfError
 from nao_kin.robot.known import KNOWN_ROBOTS, find_known, robot_file
 from nao_kin.robot.sources import is_path
 from nao_kin.urdf.document import UNREADABLE, read_bytes, read_urdf
-from nao_kin.urdf.outline import Defect, Outline, describe
-from nao_kin.urdf.positions import Place, Positions
+from nao_kin.urdf.outline import Defect, Outline
+from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.safe_xml import read_tree
 from nao_kin.urdf.structure import STAGES, TOLERATED
 from nao_kin.urdf.xacro import expand_xacro, is_xacro_file
@@ -38,11 +37,6 @@ if TYPE_CHECKING:
     from nao_kin.urdf.xacro import Expansion
 
 __all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
-
-MOST_OF_A_CODE: Final = 100
-"""Findings of one code that are listed for one file; nobody reads more, and a hostile file has millions."""
-
-_QUOTED: Final = 4 * 1024 * 1024  # [bytes] of larger files that are no XML no line is quoted
 
 TEXT_RULES: Final[tuple[Rule, ...]] = (
     vocabulary.later_words,
@@ -145,17 +139,17 @@ def check(
     except UrdfError as refusal:
         if refusal.code == UNREADABLE:
             raise
-        return _Listing(path, select, ignore).report_refusal(refusal, b"")
+        return Listing(path, select, ignore).report_refusal(refusal, b"")
     folder = Path(path).absolute().parent
     if is_xacro_file(path):
         try:
             expansion = expand_xacro(path, arguments, packages)
         except UrdfError as refusal:
-            return _Listing(path, select, ignore).report_refusal(refusal, b"")
+            return Listing(path, select, ignore).report_refusal(refusal, b"")
         options: _Options = {"packages": packages, "thorough": thorough, "select": select, "ignore": ignore}
         return check_bytes(expansion.data, path, folder=folder, expansion=expansion, **options)
     if path.endswith(".srdf"):
-        return _check_srdf(data, _Listing(path, select, ignore), folder, urdf)
+        return _check_srdf(data, Listing(path, select, ignore), folder, urdf)
     return check_bytes(data, path, folder=folder, packages=packages, thorough=thorough, select=select, ignore=ignore)
 
 
@@ -189,7 +183,7 @@ def check_bytes(
         UnknownNameError: No code of that name.
     """
     require_codes((*select, *ignore))
-    listing = _Listing(path, select, ignore)
+    listing = Listing(path, select, ignore)
     try:
         root = read_tree(data, path)
     except UrdfError as refusal:
@@ -201,7 +195,7 @@ def check_bytes(
     return listing.report()
 
 
-def _check_srdf(data: bytes, listing: _Listing, folder: Path, urdf: str | os.PathLike[str] | None) -> Report:
+def _check_srdf(data: bytes, listing: Listing, folder: Path, urdf: str | os.PathLike[str] | None) -> Report:
     from nao_kin.checks.srdf import RULES, Semantics, urdf_of
 
     try:
@@ -211,33 +205,8 @@ def _check_srdf(data: bytes, listing: _Listing, folder: Path, urdf: str | os.Pat
     subject = Subject(listing.path, data, Outline(root), Positions.of(data, root), folder)
     semantics = Semantics(root, urdf_of(root, folder) if urdf is None else read_urdf(urdf))
     for rule in RULES:
-        listing.add(subject, _bounded(rule(semantics)))
+        listing.add(subject, bounded(rule(semantics)))
     return listing.report()
-
-
-def finding_of(subject: Subject, defect: Defect) -> Finding:
-    """A defect with its place in the text and the severity that the catalogue gives it."""
-    place, said = subject.positions.place(defect), defect.message
-    path, source = subject.path, subject.positions.line_text(place.line)
-    line: int | None = place.line
-    if subject.expansion is not None:
-        place, traced = Place(place.line), subject.expansion.place(subject.outline.root, defect)
-        if traced is None:
-            line, said = None, f"{said.rstrip('.')} (line {line} of the expanded file)."
-        else:
-            (path, line), source = traced, subject.expansion.line_text(*traced)
-    return Finding(
-        path=path,
-        line=line,
-        column=place.column,
-        width=place.width,
-        code=defect.code,
-        severity=CATALOGUE[defect.code].severity,
-        element=describe(defect.at),
-        message=said,
-        hint=defect.hint,
-        source=source,
-    )
 
 
 def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
@@ -245,27 +214,27 @@ def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
     outline = subject.outline
     *early, local, connected = STAGES
     for stage in early:
-        found = [list(_bounded(rule(outline))) for rule in stage]
+        found = [list(bounded(rule(outline))) for rule in stage]
         yield from found
         if any(found):
             return
-    found = [list(_bounded(rule(outline))) for rule in local]
+    found = [list(bounded(rule(outline))) for rule in local]
     yield from found
     sound = not any(found)
-    tolerated = [list(_bounded(rule(outline))) for rule in TOLERATED]
+    tolerated = [list(bounded(rule(outline))) for rule in TOLERATED]
     yield from tolerated
     # Whoever computes with it is told; the rules on the model would only say it again.
     sound = sound and not any(_is_error(defect) for defects in tolerated for defect in defects)
     if not any(defect.code in _BREAKS_THE_TREE for defects in found for defect in defects):
-        found = [list(_bounded(rule(outline))) for rule in connected]
-        found.append(list(_bounded(tree.unreachable_links(subject))))
+        found = [list(bounded(rule(outline))) for rule in connected]
+        found.append(list(bounded(tree.unreachable_links(subject))))
         yield from found
         sound = sound and not any(found)
     for rule in TEXT_RULES:
-        yield _bounded(rule(subject))
+        yield bounded(rule(subject))
     if sound:
         for model_rule in _model_rules(subject.thorough):
-            yield _bounded(model_rule(subject))
+            yield bounded(model_rule(subject))
 
 
 def _is_error(defect: Defect) -> bool:
@@ -290,54 +259,6 @@ def _model_rules(thorough: bool) -> tuple[Rule, ...]:
         weight.balance_at_zero,
     )
     return (*rules, poses.readers_agree, weight.efforts_against_gravity) if thorough else rules
-
-
-def _bounded(defects: Iterator[Defect]) -> Iterator[Defect]:
-    """The first defects of a rule, up to one more than is listed of the code that it finds most."""
-    counts: Counter[str] = Counter()
-    for defect in defects:
-        yield defect
-        counts[defect.code] += 1
-        if counts[defect.code] > MOST_OF_A_CODE:
-            return
-
-
-@dataclass
-class _Listing:
-    """The findings of one file as they come in."""
-
-    path: str
-    select: Collection[str]
-    ignore: Collection[str]
-    findings: list[Finding] = field(default_factory=list)
-    counts: Counter[str] = field(default_factory=Counter)
-
-    def add(self, subject: Subject, defects: Iterable[Defect]) -> None:
-        """Takes up the wanted ones, of each code as many as are listed."""
-        for defect in defects:
-            if self._wanted(defect.code):
-                self.counts[defect.code] += 1
-                if self.counts[defect.code] <= MOST_OF_A_CODE:
-                    self.findings.append(finding_of(subject, defect))
-
-    def report(self) -> Report:
-        """All that has come in."""
-        crowded = [(self.path, code) for code, count in self.counts.items() if count > MOST_OF_A_CODE]
-        return Report.of([self.path], self.findings, crowded)
-
-    def report_refusal(self, refusal: UrdfError, data: bytes) -> Report:
-        """The report on a file that never became a tree."""
-        lines = data.decode("utf-8", "replace").split("\n") if refusal.line and len(data) < _QUOTED else []
-        source = lines[refusal.line - 1].rstrip("\r") if refusal.line and refusal.line <= len(lines) else ""
-        code, severity = refusal.code, CATALOGUE[refusal.code].severity
-        if self._wanted(code):
-            self.findings.append(
-                Finding(refusal.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
-            )
-        return self.report()
-
-    def _wanted(self, code: str) -> bool:
-        return code not in self.ignore and (not self.select or code in self.select)
 
 
 def _path_of(robot: str | os.PathLike[str]) -> str:
