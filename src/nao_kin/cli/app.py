@@ -33,6 +33,7 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "ik": {"short_help": "Joints that bring a tip somewhere."},
     "compare": {"short_help": "A table against a model, or any two chains."},
     "check": {"short_help": "Defects of URDF files, with lines; for CI."},
+    "diff": {"short_help": "What differs between two robots, and how far tips move."},
     "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
     "workspace": {"short_help": "A map of where a tip can be."},

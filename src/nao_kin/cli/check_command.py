@@ -51,6 +51,9 @@ def check(
     against: Annotated[str | None, typer.Option(help="Another URDF to hold the model against.")] = None,
     baseline: Annotated[Path | None, typer.Option(help="Do not report what this file knows already.")] = None,
     update_baseline: Annotated[bool, typer.Option("--update-baseline", help="Record the findings in it.")] = False,
+    fix: Annotated[bool, typer.Option("--fix", help="Show repairs that cannot change kinematics, as a diff.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="With --fix: write them.")] = False,
+    swap_limits: Annotated[bool, typer.Option("--swap-limits", help="With --fix: exchange such limits.")] = False,
 ) -> None:
     """Check URDF files. Exit status 0: clean; 1: findings; 2: wrong usage or unreadable input."""
     from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
@@ -69,6 +72,12 @@ def check(
         "ignore": ignored,
     }
     paths = _paths(files)
+    if (write or swap_limits) and not fix:
+        raise typer.BadParameter("--write and --swap-limits go with --fix.")
+    if fix:
+        from nao_kin.cli.fixing import fix_files
+
+        raise typer.Exit(fix_files(paths, write=write, swap_limits=swap_limits))
     if (dh or against) and (len(paths) != 1 or paths == ["-"]):
         raise typer.BadParameter("--dh and --against are for one file.")
     known = read_baseline(baseline) if baseline is not None and not update_baseline else None
