@@ -82,7 +82,9 @@ def chain_of_robot(robot: Robot, name: str | None, base: str | None, tip: str | 
     if base is not None:
         raise typer.BadParameter("--base needs --tip.")
     if not robot.chain_frames:
-        raise typer.BadParameter(f"{robot.name} has no named chains: say which with --base and --tip.")
+        names = ", ".join(robot.chain_names[:8]) or "none"
+        hint = f"say which with --base and --tip, or --chain ({names})"
+        raise typer.BadParameter(f"{robot.name} has no named chains: {hint}.")
     return robot.chain(next(iter(robot.chain_frames)))
 
 

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from nao_kin.output import FormatOption, OutputFormat, report, report_json
 
 __all__ = ["robots"]
 
 
-def robots(format: FormatOption = OutputFormat.text) -> None:
+def robots(
+    fetch: Annotated[
+        str | None, typer.Option(help="Download a robot of robot_descriptions.py.", metavar="NAME")
+    ] = None,
+    format: FormatOption = OutputFormat.text,
+) -> None:
     """List the robots that load by name, and the names of the documents' chains."""
+    if fetch is not None:
+        from nao_kin.robot.descriptions import fetch as fetch_description
+
+        report(f"{fetch} is at {fetch_description(fetch).path}.")
+        return
     from nao_kin.documents.chains import DOCUMENT_CHAINS
     from nao_kin.robot.known import ALIASES, KNOWN_ROBOTS, example_robot_data_share
     from nao_kin.table import Column, Table
@@ -40,6 +54,13 @@ def robots(format: FormatOption = OutputFormat.text) -> None:
         rows.append((name, robot.title, extra))
     here = "is installed" if installed else "is not installed: pip install 'nao_kin[robots]'"
     columns = (Column("name"), Column("robot"), Column("extra"))
-    report(Table(columns, tuple(rows), note=f"The extra 'robots' {here}. Any URDF loads by its path."), "")
+    report(
+        Table(
+            columns,
+            tuple(rows),
+            note=f"The extra 'robots' {here}. Any URDF loads by its path.",
+        ),
+        "",
+    )
     documents = tuple((name, d.source, d.robot) for name, d in DOCUMENT_CHAINS.items())
     report(Table((Column("document chain"), Column("source"), Column("robot")), documents))

@@ -18,6 +18,7 @@ import pinocchio as pin
 from nao_kin.arrays import finite
 from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, into_limits, limit_texts
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.robot.chain_names import end_chains, srdf_chains
 from nao_kin.robot.couplings import Coupling, couplings_of, driven_joints, stated
 from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share
 from nao_kin.robot.motors import Motors
@@ -41,7 +42,7 @@ __all__ = ["Robot", "load"]
 def load(
     robot: str | os.PathLike[str], *, arguments: Mapping[str, object] | None = None, packages: PackageRoots = ()
 ) -> Robot:
-    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF file or of one of xacro's macros.
+    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF, xacro or MJCF file.
 
     Args:
         robot: Text that ends in ``.urdf`` or ``.xacro`` or contains a path separator is a path; a `pathlib.Path` is.
@@ -136,6 +137,15 @@ class Robot:
     def root(self) -> str:
         """The frame that every other one hangs from."""
         return self.document.root
+
+    @property
+    def chain_names(self) -> tuple[str, ...]:
+        """Names that `chain` takes: those of a known robot, the groups of an SRDF beside the file, the end links."""
+        return (*self.chain_frames, *(name for name in self._other_chains if name not in self.chain_frames))
+
+    @cached_property
+    def _other_chains(self) -> dict[str, tuple[str, str]]:
+        return {**end_chains(self.document), **srdf_chains(self.document)}
 
     @cached_property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -257,16 +267,18 @@ class Robot:
         return {name: pin.SE3(data.oMf[i]) for name, i in self._frame_ids.items()}
 
     def chain(self, base: str, tip: str | None = None) -> UrdfChain:
-        """The chain from a base frame to a tip frame, or the named chain: ``robot.chain("left_arm")``.
+        """The chain from a base frame to a tip frame, or a named one of `chain_names`: ``robot.chain("left_arm")``.
 
         Raises:
             UnknownNameError: Unknown frame or chain; carries near matches.
             NoPathError: No moving joint lies between the two frames.
         """
         if tip is None:
-            if base not in self.chain_frames:
-                raise UnknownNameError("chain", base, self.chain_frames, self.name)
-            return UrdfChain(self, *self.chain_frames[base], label=base)
+            frames = self.chain_frames.get(base) or self._other_chains.get(base)
+            if frames is None:
+                raise UnknownNameError("chain", base, self.chain_names, self.name)
+            self._require_frames(*frames)
+            return UrdfChain(self, *frames, label=base)
         self._require_frames(base, tip)
         named = (name for name, frames in self.chain_frames.items() if frames == (base, tip))
         return UrdfChain(self, base, tip, label=next(named, ""))

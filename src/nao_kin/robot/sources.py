@@ -10,20 +10,20 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from nao_kin.errors import InvalidInputError, UnknownNameError, UrdfWarning
-from nao_kin.robot.known import find_known, robot_file
+from nao_kin.robot.known import KnownRobot, find_known, robot_file
 from nao_kin.urdf import read_urdf
 from nao_kin.urdf.xacro import is_xacro_file, read_xacro
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from nao_kin.robot.known import KnownRobot
+    from nao_kin.robot.descriptions import Description
     from nao_kin.urdf import UrdfDocument
     from nao_kin.urdf.packages import PackageRoots
 
 __all__ = ["SUFFIXES", "Reading", "given_arguments", "is_path", "read_source", "reading", "tell"]
 
-SUFFIXES = (".urdf", ".xacro", ".srdf")
+SUFFIXES = (".urdf", ".xacro", ".srdf", ".xml", ".mjcf")
 """Endings by which text is a path, not a name."""
 
 
@@ -71,21 +71,45 @@ def read_source(
     Raises:
         UnknownNameError, MissingExtraError, UrdfError, InvalidInputError: See `nao_kin.load`.
     """
-    path, known = robot, None
+    path, known, usual = robot, None, _READING.get(Reading())
+    given = usual.arguments if arguments is None else arguments
+    packages = packages or usual.packages
     if not is_path(robot):
         try:
             known = find_known(os.fspath(robot))
             path = robot_file(known)
-        except UnknownNameError:
+        except UnknownNameError as unknown:
             if not os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
-                raise
+                described = _described(os.fspath(robot), unknown)
+                path, given = described.path, {**described.arguments, **given}
+                packages = packages or described.packages
+                title = f"{described.name} of robot_descriptions.py"
+                file = os.fspath(described.path)
+                known = KnownRobot(described.name, title, file, "robot_descriptions", described.chains)
     if is_xacro_file(path):
-        usual = _READING.get(Reading())
-        given = usual.arguments if arguments is None else arguments
-        return read_xacro(path, given, packages or usual.packages), known
+        return read_xacro(path, given, packages), known
+    if is_mjcf_file(path):
+        from nao_kin.robot.mjcf import read_mjcf
+
+        return read_mjcf(path), known
     if arguments:
         raise InvalidInputError("arguments", "a file of macros (.xacro) that takes them", os.fspath(robot))
     return read_urdf(path), known
+
+
+def _described(name: str, unknown: UnknownNameError) -> Description:
+    """The description of that name; the error that no robot has it, where none has."""
+    from nao_kin.robot.descriptions import find_description
+
+    try:
+        return find_description(name)
+    except UnknownNameError as error:
+        raise (unknown if unknown.near or not error.near else error) from None
+
+
+def is_mjcf_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is one of MuJoCo, by its name."""
+    return os.fspath(path).endswith((".xml", ".mjcf"))
 
 
 def tell(document: UrdfDocument, stacklevel: int = 2) -> None:

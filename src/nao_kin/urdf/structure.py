@@ -31,8 +31,8 @@ def root_element(outline: Outline) -> Iterator[Defect]:
     if tag == "robot":
         return
     hints = {
-        "sdf": "It is an SDF file (Gazebo); convert it to URDF first.",
-        "mujoco": "It is an MJCF file (MuJoCo); convert it to URDF first.",
+        "sdf": "It is an SDF file (Gazebo), for which Pinocchio's wheel has no reader; convert it to URDF first.",
+        "mujoco": "It is an MJCF file (MuJoCo): named .xml it loads for kinematics; the rules are for URDF.",
     }
     given = shown(tag or str(root.tag))[1:-1]
     message = f"The root element is <{given}>, but a URDF begins with <robot>."
