@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import nao_kin as nk
 from nao_kin.bench import peers as peers_module
 from nao_kin.bench.arms import many_chains
-from nao_kin.bench.contest import Contender, Task
+from nao_kin.bench.contest import Contender, SolverTask
 from nao_kin.bench.peers import Peer, Unsuited
 from nao_kin.cli.app import application
 from tests.conftest import needs
@@ -54,18 +54,18 @@ def missed(data: dict[str, Any], *timed: str) -> list[str]:
     ]
 
 
-def liar(task: Task) -> Contender:
+def liar(task: SolverTask) -> Contender:
     """Says of every target that the start reaches it."""
     return Contender("liar", lambda _: task.start, lambda q: q)
 
 
-def honest(task: Task) -> Contender:
+def honest(task: SolverTask) -> Contender:
     """Solves as we do, in its own words."""
     chain = task.chain
     return Contender("honest", lambda T: nk.solve(chain, T), lambda r: r.q if r.solved else None)
 
 
-def fussy(task: Task) -> Contender:
+def fussy(task: SolverTask) -> Contender:
     raise Unsuited("only arms of another colour")
 
 

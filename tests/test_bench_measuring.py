@@ -13,19 +13,19 @@ import nao_kin as nk
 from nao_kin.bench import peers as peers_module
 from nao_kin.bench.arms import main_arm, many_chains
 from nao_kin.bench.bench_edges import bad_targets, farthest, near_full_reach
-from nao_kin.bench.contest import Contender, Task, contest
+from nao_kin.bench.contest import Contender, SolverTask, contest
 from nao_kin.bench.measuring import in_turns, one_thread
 from nao_kin.bench.peers import installed_peers
 from nao_kin.bench.referee import NEAR, Referee
-from nao_kin.bench.sheet import Goal, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import OutputFormat
 
 
 def test_a_missed_goal_is_an_exit_status(capsys: pytest.CaptureFixture[str]) -> None:
     sheet = Sheet("rows", "title", (Heading("a", "a"), Heading("b", "b", ".1f")), [{"a": "x", "b": None}])
-    goals = [Goal("speed", 2.0, 3.0), Goal("error", 0.0, 0.0, at_least=False)]
+    goals = [Promise("speed", 2.0, 3.0), Promise("error", 0.0, 0.0, at_least=False)]
     assert [goal.met for goal in goals] == [False, True]
-    assert not Goal("nothing", math.nan, 0.0).met
+    assert not Promise("nothing", math.nan, 0.0).met
     conclude(Machine(), [sheet], goals, ["a note"], OutputFormat.text, enforce=False)
     assert "NO" in capsys.readouterr().out
     with pytest.raises(typer.Exit) as left:
@@ -104,7 +104,7 @@ def test_one_thread_is_given_back() -> None:
 
 def test_every_contender_gets_every_target() -> None:
     arm = nk.load("jaco2").chain("arm")
-    task = Task.reachable(arm, 60, 3)
+    task = SolverTask.reachable(arm, 60, 3)
     asked: list[bytes] = []
     solver = Contender("echo", lambda T: asked.append(T.tobytes()), lambda _: None)
     (score,) = contest(task, [solver], 2, "counting")
@@ -116,7 +116,7 @@ def test_every_contender_gets_every_target() -> None:
 @pytest.mark.parametrize("name", tuple(peers_module.PEERS))
 def test_installed_peers_solve_what_they_are_given(name: str) -> None:
     arm, _ = main_arm()
-    task = Task.reachable(arm, 20, 5)
+    task = SolverTask.reachable(arm, 20, 5)
     found, left_out = installed_peers(task, [name])
     if not found:
         pytest.skip(left_out[0])

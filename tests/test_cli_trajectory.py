@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import nao_kin as nk
 from nao_kin.cli.app import application
-from nao_kin.cli.trajectory.summary import curve, headline
+from nao_kin.cli.trajectory_command import curve, headline
 from nao_kin.trajectory.trajectory import Trajectory
 from tests.test_cli import run
 

@@ -243,7 +243,7 @@ def test_bad_targets_are_named(target: object, message: str) -> None:
 
 def test_a_printed_matrix_is_refused_with_the_remedy() -> None:
     """Three digits are no rotation to eight; the message names the function that makes it one."""
-    from nao_kin.documents.practicum.sheet import CHECK_T_BASE_HAND
+    from nao_kin.documents.practicum.practicum_sheet import CHECK_T_BASE_HAND
     from nao_kin.se3 import nearest_rotation
 
     arm = robot("jaco2").chain("arm")

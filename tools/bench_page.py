@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from nao_kin.bench.peers import PEERS
-from nao_kin.bench.sheet import Goal, Heading, Machine
+from nao_kin.bench.sheet import Heading, Machine, Promise
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 KEPT: Final = ROOT / "docs" / "bench"
@@ -132,7 +132,7 @@ def _machine(machine: dict[str, Any]) -> list[str]:
 
 
 def _goals(goals: list[dict[str, Any]]) -> str:
-    found = [Goal(goal["what"], _number(goal["value"]), _number(goal["bound"]), goal["at_least"]) for goal in goals]
+    found = [Promise(goal["what"], _number(goal["value"]), _number(goal["bound"]), goal["at_least"]) for goal in goals]
     rows = [[g.what, f"{g.value:.4g}", f"{'≥' if g.at_least else '≤'} {g.bound:.4g}", _yes(g.met)] for g in found]
     return table(["goal", "is", "should be", "met"], rows, [False, True, True, False])
 

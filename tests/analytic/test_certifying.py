@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from nao_kin.analytic.certifying import ABSENT, OUTSIDE, SOLVED, Certificate, Ranges, Written, certify, placed
+from nao_kin.analytic.certifying import ABSENT, SOLVED, Certificate, Ranges, Written, certify, placed
 from nao_kin.chain import outside_limits, random_configurations
+from nao_kin.ik.problem import Status
 from nao_kin.ik.target import KINDS
 from nao_kin.tolerances import TOLERANCES
 from tests.conftest import robot
@@ -71,7 +72,7 @@ def test_limits_are_those_of_the_chain_coupled_ones_included(part: str, rng: np.
     Q = rng.uniform(1.3 * chain.lower, 1.3 * chain.upper, (2000, len(chain.joints)))
     rows, counts = claims(chain, Q, 1)
     codes = certified(chain, chain.poses(Q), rows, counts).codes[:, 0]
-    expected = [OUTSIDE if outside_limits(chain, q, TOLERANCES.limits) else SOLVED for q in Q]
+    expected = [Status.OUTSIDE_LIMITS.number if outside_limits(chain, q, TOLERANCES.limits) else SOLVED for q in Q]
     assert codes.tolist() == expected
     assert len(set(expected)) == 2
 

@@ -11,7 +11,7 @@ import pytest
 import nao_kin as nk
 from nao_kin.analytic.form import Geometry, Mismatch
 from nao_kin.analytic.hexapod import hexapod_leg as hexapod
-from nao_kin.analytic.hexapod import hexapod_leg_kernel as hexapod_kernel
+from nao_kin.analytic.hexapod import hexapod_leg as hexapod_kernel
 from nao_kin.chain import Chain, random_configurations
 from nao_kin.kernels.forward import jacobians, poses
 from tests.analytic.searching import POSITION, Branches, branches, moved, newton, random_poses, replace_path, wrapped

@@ -10,7 +10,8 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.analytic.form import Geometry, Mismatch
-from nao_kin.analytic.nao import leg_kernel, nao_leg
+from nao_kin.analytic.nao import nao_leg
+from nao_kin.analytic.nao import nao_leg as leg_kernel
 from nao_kin.chain import Chain, in_limits, random_configurations
 from nao_kin.kernels.forward import jacobians, poses
 from nao_kin.se3 import from_xyz_rpy

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from nao_kin.analytic.hexapod.body import body_ik_batch
-from nao_kin.analytic.hexapod.plane_construction import body_pose, plane_construction
+from tests.analytic.plane_construction import body_pose, plane_construction
 from tests.analytic.walkers import HIP, HIPS, SHIN, THIGH, WALKER, round_feet, round_legs
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import nao_kin as nk
-from nao_kin.analytic.hexapod.plane_construction import Walker
 from nao_kin.se3 import translation
+from tests.analytic.plane_construction import Walker
 from tests.conftest import robot
 
 if TYPE_CHECKING:

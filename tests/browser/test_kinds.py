@@ -11,7 +11,7 @@ import nao_kin as nk
 from nao_kin.analytic.hexapod.body import body_ik
 from nao_kin.motion.hexapod.footfall import LEGS
 from nao_kin.motion.hexapod.gait import walk
-from nao_kin.motion.hexapod.walk_command import WalkCommand
+from nao_kin.motion.hexapod.walk_request import WalkCommand
 from nao_kin.se3 import from_xyz_rpy
 from tests.browser.seeing import drive, number, pixels, robot_mask, slide, slide_all, tip, tip_shown
 from tests.conftest import robot

@@ -13,10 +13,7 @@ from tests.conftest import needs
 
 from nao_kin.checks.checker import check_bytes
 from nao_kin.checks.finding import Finding, Report, Severity
-from nao_kin.checks.formats.data import as_data
-from nao_kin.checks.formats.github import as_github
-from nao_kin.checks.formats.junit import as_junit
-from nao_kin.checks.formats.sarif import as_sarif
+from nao_kin.checks.formats.machine import as_data, as_github, as_junit, as_sarif
 from nao_kin.checks.formats.text import as_text
 
 DATA = Path(__file__).parent / "data"

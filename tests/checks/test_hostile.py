@@ -14,9 +14,7 @@ from tests.urdf.test_crash_guard import BOMB, NASTY, joints
 
 import nao_kin as nk
 from nao_kin.checks.checker import MOST_OF_A_CODE, check_bytes
-from nao_kin.checks.formats.github import as_github
-from nao_kin.checks.formats.junit import as_junit
-from nao_kin.checks.formats.sarif import as_sarif
+from nao_kin.checks.formats.machine import as_github, as_junit, as_sarif
 from nao_kin.checks.formats.text import as_text
 
 if TYPE_CHECKING:

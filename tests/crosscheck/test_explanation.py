@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.bench.bench_explain import Verdict, verdict_of
-from nao_kin.bench.planted import KINDS, planted_tables
+from nao_kin.bench.bench_explain import KINDS, Verdict, planted_tables, verdict_of
 from nao_kin.documents.chains import DOCUMENT_CHAINS
 from nao_kin.se3 import position_distance, rotation_distance
 from tests.conftest import robot

@@ -10,7 +10,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.crosscheck.edits import known_edits
-from nao_kin.crosscheck.precision import printed_resolution
+from nao_kin.crosscheck.explanation import printed_resolution
 from nao_kin.crosscheck.tables import Tables, errors_of, goal_of, motion
 from nao_kin.se3 import from_xyz_rpy
 from tests.conftest import robot

@@ -196,7 +196,7 @@ class _Page(html.parser.HTMLParser):
 
 def test_the_page_needs_no_network_and_typesets_every_formula_that_has_latex() -> None:
     pytest.importorskip("latex2mathml")
-    from nao_kin.documents.erratum_page import as_html
+    from nao_kin.documents.erratum import as_html
 
     found, page = everything(), _Page()
     text = as_html(found)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nao_kin.documents.practicum.position_ik import ik_checked, ik_pseudo_inverse, ik_transpose, position_jacobian
-from nao_kin.documents.practicum.sheet import jaco2
+from nao_kin.documents.practicum.practicum_sheet import jaco2
 from nao_kin.errors import InvalidInputError
 
 START = np.radians([180.0, 200.0, 120.0, 90.0, 150.0, 10.0])

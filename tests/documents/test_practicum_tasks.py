@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from nao_kin.documents.practicum.practicum_sheet import CHECK_Q_DEG, CHECK_T_BASE_HAND
 from nao_kin.documents.practicum.practicum_tasks import (
     dh_transform,
     forward_kinematics,
@@ -18,7 +19,6 @@ from nao_kin.documents.practicum.practicum_tasks import (
     run_file,
     save_ik_of_points,
 )
-from nao_kin.documents.practicum.sheet import CHECK_Q_DEG, CHECK_T_BASE_HAND
 from nao_kin.errors import InvalidInputError
 from tests.conftest import robot
 

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from nao_kin.chain import Chain, into_limits, random_configurations
+from nao_kin.ik.aim import SweepGoal
 from nao_kin.ik.geometric.ccd import squared_error
 from nao_kin.ik.geometric.sweep import CCD, FABRIK, FOLLOW_THE_LEADER, sweep, sweep_memory
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
+from nao_kin.kernels import motion
 from nao_kin.kernels.joint_limits import packed_rules
 from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
-from nao_kin.kernels.motion import packed_joints, place
+from nao_kin.kernels.motion import At, packed_joints, place
 
 METHODS = {"ccd": CCD, "ftl": FOLLOW_THE_LEADER, "fabrik": FABRIK}
 POSITION = KINDS["position"]
@@ -38,6 +40,10 @@ class Arm:
     def along(cls, path: JointPath) -> Arm:
         return cls(packed_joints(path), np.array([path.lower, path.upper]), np.empty((0, 7)))
 
+    @property
+    def flat(self) -> motion.Arm:
+        return motion.Arm(self.joints, self.limits, self.coupled)
+
     def placed(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         axes, tip = np.empty((len(self.joints) - 1, 6)), np.empty(12)
         place(self.joints, q, axes, tip)
@@ -46,26 +52,14 @@ class Arm:
     def swept(self, method: str, goal: np.ndarray, q: np.ndarray, kind: int = POSITION) -> np.ndarray:
         q, memory = q.copy(), np.full(sweep_memory(self.joints), np.nan)  # so that nothing is read before it is written
         axes, tip = self.placed(q)
-        sweep(
-            METHODS[method],
-            self.joints,
-            self.limits,
-            self.coupled,
-            kind,
-            goal,
-            self.closeness,
-            q,
-            axes,
-            tip,
-            memory,
-        )
+        sweep(METHODS[method], self.flat, SweepGoal(kind, goal, self.closeness), At(q, axes, tip), memory)
         again = self.placed(q)
         np.testing.assert_array_equal(axes, again[0])
         np.testing.assert_array_equal(tip, again[1])
         return q
 
     def error(self, goal: np.ndarray, q: np.ndarray, kind: int = POSITION) -> float:
-        return squared_error(kind, goal, self.closeness, self.placed(q)[1])
+        return squared_error(SweepGoal(kind, goal, self.closeness), self.placed(q)[1])
 
     def missing(self, goal: np.ndarray, q: np.ndarray) -> float:
         return float(np.linalg.norm(self.placed(q)[1][9:] - goal[:3, 3]))

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from nao_kin.chain import Chain, in_limits, into_limits, random_configurations
+from nao_kin.ik.aim import SweepGoal
 from nao_kin.ik.geometric.ccd import move_column, squared_error
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.joint_path import PathJoint, joint_path
-from nao_kin.kernels.motion import COLUMN
+from nao_kin.kernels.motion import COLUMN, At
 from nao_kin.robot.known import KNOWN_ROBOTS
 from tests.conftest import BUNDLED, EXAMPLES, needs_examples, robot
 from tests.ik.solving import chain_of
@@ -44,7 +45,7 @@ def _error(kind: str, goal: np.ndarray, closeness: float, chain: Chain, q: np.nd
 def _moved(arm: Arm, kind: str, goal: np.ndarray, k: int, q: np.ndarray) -> np.ndarray:
     q, (axes, tip) = q.copy(), arm.placed(q)
     memory = np.full(len(q) + axes.size + 12, np.nan)
-    move_column(arm.joints, arm.limits, arm.coupled, KINDS[kind], goal, arm.closeness, k, q, axes, tip, memory)
+    move_column(arm.flat, SweepGoal(KINDS[kind], goal, arm.closeness), k, At(q, axes, tip), memory)
     np.testing.assert_allclose(tip, arm.placed(q)[1], atol=1e-13)
     return q
 
@@ -143,5 +144,5 @@ def test_the_error_is_its_definition(rng: np.random.Generator) -> None:
     for kind, code in KINDS.items():
         for q in random_configurations(chain, 20, rng):
             goal = _goal(kind, chain, rng)
-            measured = squared_error(code, goal, arm.closeness, arm.placed(q)[1])
+            measured = squared_error(SweepGoal(code, goal, arm.closeness), arm.placed(q)[1])
             assert measured == pytest.approx(_error(kind, goal, arm.closeness, chain, q), abs=1e-12)

@@ -15,7 +15,8 @@ import pytest
 
 from nao_kin.chain import in_limits, into_limits, neutral, random_configurations
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, layout
+from nao_kin.ik import aim
+from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.compiled import run_of, solve_goal, solve_goals, tables_of
 from nao_kin.ik.problem import Status
 from nao_kin.ik.reference_loop import Budget
@@ -118,7 +119,7 @@ def test_a_batch_is_the_same_to_the_last_bit_however_it_is_run(name, part, kind,
     np.testing.assert_array_equal(single, together)
     each = np.repeat(q0, len(goals), axis=0)
     np.testing.assert_array_equal(solve_goals(tables, wanted, goals, each), together)
-    assert (together[:, layout.CODE] == layout.SOLVED).all()
+    assert (together[:, loop.CODE] == loop.SOLVED).all()
 
 
 def test_no_targets_give_no_outcomes() -> None:
@@ -132,14 +133,14 @@ def test_reachable_targets_are_solved(name, part, kind, from_stored, rng: np.ran
     chain = chain_of(name, part)
     goals, wanted = goals_of(chain, 1000, rng), settings(chain, kind, from_stored=from_stored)
     outcomes = solve_goals(tables_of(chain), wanted, goals, neutral(chain)[None])
-    solved = outcomes[:, layout.CODE] == layout.SOLVED
+    solved = outcomes[:, loop.CODE] == loop.SOLVED
     assert solved.sum() >= 999
     for outcome, goal in zip(outcomes[solved], goals[solved], strict=True):
-        position, rotation = errors(chain, outcome[layout.OUTCOME :], goal)
+        position, rotation = errors(chain, outcome[loop.OUTCOME :], goal)
         assert position <= 1e-6
         assert rotation <= 1e-6 or kind == "position"
-        assert in_limits(chain, outcome[layout.OUTCOME :], 1e-12)
-        assert outcome[layout.POSITION_ERROR] == pytest.approx(position, abs=1e-12)
+        assert in_limits(chain, outcome[loop.OUTCOME :], 1e-12)
+        assert outcome[loop.POSITION_ERROR] == pytest.approx(position, abs=1e-12)
 
 
 # What makes no sense, and what is moved
@@ -153,14 +154,14 @@ def test_numbers_that_are_not_finite_are_refused(bad: float) -> None:
         goal = good.copy()
         goal[i, j] = bad
         outcome = solve_goal(tables_of(chain), settings(chain), goal, neutral(chain))
-        assert outcome[layout.CODE] == layout.BAD_GOAL
-        assert in_limits(chain, outcome[layout.OUTCOME :])
+        assert outcome[loop.CODE] == loop.BAD_GOAL
+        assert in_limits(chain, outcome[loop.OUTCOME :])
         with pytest.raises(InvalidInputError, match="finite"):
             run_of(outcome, aim.POSE)
     q0 = neutral(chain)
     q0[3] = bad
     outcome = solve_goal(tables_of(chain), settings(chain), good, q0)
-    assert (outcome[layout.CODE], outcome[layout.AMOUNT]) == (layout.BAD_START, 3)
+    assert (outcome[loop.CODE], outcome[loop.AMOUNT]) == (loop.BAD_START, 3)
     with pytest.raises(InvalidInputError, match="index 3"):
         run_of(outcome, aim.POSE)
 
@@ -172,8 +173,8 @@ def test_a_rotation_that_is_none_is_refused_with_its_size() -> None:
         goal = T.copy()
         goal[:3, :3] = R
         outcome = solve_goal(tables_of(chain), settings(chain), goal, neutral(chain))
-        assert outcome[layout.CODE] == layout.BAD_GOAL
-        assert outcome[layout.AMOUNT] == pytest.approx(size)
+        assert outcome[loop.CODE] == loop.BAD_GOAL
+        assert outcome[loop.AMOUNT] == pytest.approx(size)
     goal = np.array([[0.0, 1, 0, 0], [0, 0, 0, 0], [2, 0, 0, 0], [0, 0, 0, 1]])
     assert aim.goal_violation(aim.POINTING, goal) == pytest.approx(1.0)
     assert aim.goal_violation(aim.POSITION, goal) == 0.0

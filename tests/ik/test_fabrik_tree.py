@@ -8,7 +8,7 @@ import pytest
 from nao_kin.ik.geometric.fabrik import hinge_memory, hinge_pass
 from nao_kin.ik.geometric.fabrik_tree import tree_pass, tree_sweep
 from nao_kin.kernels.joint_limits import move_inside, packed_rules
-from nao_kin.kernels.motion import packed_joints
+from nao_kin.kernels.motion import At, packed_joints
 from tests.conftest import robot
 from tests.ik.sweeping import Arm
 
@@ -59,7 +59,7 @@ def test_arms_that_share_no_joint_are_each_an_arm_by_itself(rng: np.random.Gener
             arm, part = Arm.of(chain), q[own]
             axes, tip = arm.placed(part)
             memory = np.empty(hinge_memory(arm.joints))
-            hinge_pass(False, arm.joints, arm.limits, arm.coupled, goal, part, axes, tip, memory)
+            hinge_pass(False, arm.flat, goal, At(part, axes, tip), memory)
             expected[own] = part
         moved = tree_pass(body.paths, body.columns, body.limits, body.coupled, goals, q)
         np.testing.assert_allclose(moved, expected, atol=1e-12)

@@ -14,6 +14,7 @@ from nao_kin.ik.geometric.hinge_groups import chain_length, find_groups, group_p
 from nao_kin.ik.geometric.sweep import refusal
 from nao_kin.ik.reach import reach_shell
 from nao_kin.kernels.joint_path import JointPath, PathJoint, joint_path
+from nao_kin.kernels.motion import At
 from tests.conftest import robot
 from tests.ik.solving import chain_of
 from tests.ik.sweeping import METHODS, Arm, at, goals_of, near_pairs, planar, random_hinges
@@ -171,7 +172,7 @@ def _points(arm: Arm, q: np.ndarray) -> np.ndarray:
 
 def _passed(arm: Arm, goal: np.ndarray, q: np.ndarray, follow: bool) -> np.ndarray:
     q, (axes, tip) = q.copy(), arm.placed(q)
-    hinge_pass(follow, arm.joints, arm.limits, arm.coupled, goal, q, axes, tip, np.empty(hinge_memory(arm.joints)))
+    hinge_pass(follow, arm.flat, goal, At(q, axes, tip), np.empty(hinge_memory(arm.joints)))
     return q
 
 

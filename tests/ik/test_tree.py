@@ -12,9 +12,8 @@ from nao_kin.chain import neutral, outside_limits, random_configurations
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.tips.precedence import Task, prioritised_step
 from nao_kin.ik.tips.tree_aim import apart
-from nao_kin.ik.tips.tree_loop import USUAL
 from nao_kin.ik.tips.tree_problem import TreeProblem, TreeResult, TreeRun, judge_tree
-from nao_kin.ik.tips.tree_solver import solve_tree
+from nao_kin.ik.tips.tree_solver import USUAL, solve_tree
 from nao_kin.se3 import rotation_angle
 from tests.conftest import robot
 

@@ -26,8 +26,8 @@ from nao_kin.cli.app import application
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.motors import Motors
 from nao_kin.trajectory.joint_space import joint_motion
+from nao_kin.view.page import scene_json
 from nao_kin.view.robot_scene import robot_scene
-from nao_kin.view.scene_data import scene_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

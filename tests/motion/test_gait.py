@@ -12,10 +12,9 @@ import pinocchio as pin
 import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.hexapod.footfall import GAITS, LEGS, Course, Gait
-from nao_kin.motion.hexapod.gait import Walk, fastest, walk
-from nao_kin.motion.hexapod.walk_command import WalkCommand
-from nao_kin.motion.hexapod.walk_plan import WalkPlan
+from nao_kin.motion.hexapod.footfall import GAITS, LEGS, BodyCourse, Gait
+from nao_kin.motion.hexapod.gait import Walk, WalkPlan, fastest, walk
+from nao_kin.motion.hexapod.walk_request import WalkCommand
 from tests.conftest import robot
 
 LEAN = (0.01, -0.01, 0.01, 0.05, -0.05, 0.1)
@@ -124,7 +123,7 @@ def test_the_body_moves_as_commanded(way: WalkCommand) -> None:
 
 
 def test_the_course_is_the_integral_of_its_velocity() -> None:
-    course = Course((0.1, -0.03), 0.4, 7.0, 1.3)
+    course = BodyCourse((0.1, -0.03), 0.4, 7.0, 1.3)
     times = np.linspace(0.0, 7.0, 70_001)
     u = np.clip(np.minimum(times, 7.0 - times) / 1.3, 0.0, 1.0)
     share = 3 * u**2 - 2 * u**3

@@ -12,8 +12,7 @@ from nao_kin.bench.bench_guard import ClearanceReferee, _drawn, _least_between, 
 from nao_kin.chain import in_limits, random_configurations
 from nao_kin.collision import CollisionModel, Plane
 from nao_kin.errors import InvalidInputError
-from nao_kin.motion.clearance import Clearance
-from nao_kin.motion.loop.guard import Guard
+from nao_kin.motion.loop.guard import Clearance, Guard
 from tests.conftest import robot
 
 MARGIN = 0.01

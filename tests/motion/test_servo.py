@@ -12,8 +12,7 @@ import nao_kin as nk
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.motion.loop.plants import RigidBodies, VelocityServos
-from nao_kin.motion.loop.servo import Gains, Servo, run_servo
-from nao_kin.motion.loop.tuning import P_OVERSHOOT, compare_feed_forward, overshoot, tune
+from nao_kin.motion.loop.servo import P_OVERSHOOT, Gains, Servo, compare_feed_forward, overshoot, run_servo, tune
 from nao_kin.robot.motors import Motors
 from nao_kin.trajectory import Trajectory
 from tests.conftest import robot

@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.nao.torso import BENT_KNEES, TorsoMotion, torso_motion
+from nao_kin.motion.nao.feet import BENT_KNEES, TorsoMotion, torso_motion
 from nao_kin.se3 import from_xyz_rpy
 from tests.conftest import robot
 

@@ -9,8 +9,8 @@ import nao_kin as nk
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError
 from nao_kin.trajectory.demand import demand_of
+from nao_kin.trajectory.following import slowed
 from nao_kin.trajectory.joint_space import joint_profiles
-from nao_kin.trajectory.scaling import slowed
 from tests.conftest import robot
 
 ARM = robot("jaco2").chain("arm")

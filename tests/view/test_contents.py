@@ -12,10 +12,9 @@ from tests.conftest import robot
 import nao_kin as nk
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.view.contents import scene_of
-from nao_kin.view.limbs import legs_of, limbs, main_tip
-from nao_kin.view.page import page
+from nao_kin.view.page import page, scene_json
+from nao_kin.view.robot_scene import legs_of, limbs, main_tip
 from nao_kin.view.scene import world_poses
-from nao_kin.view.scene_data import scene_json
 
 if TYPE_CHECKING:
     from nao_kin.view.scene import Scene

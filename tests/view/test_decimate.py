@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
-from nao_kin.view.decimate import FEWEST, decimated, shares
+from nao_kin.view.budget import FEWEST, decimated, shares
 from nao_kin.view.meshes import Mesh
 
 if TYPE_CHECKING:

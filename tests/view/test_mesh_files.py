@@ -12,7 +12,7 @@ from tests.conftest import needs_examples
 
 from nao_kin.robot.known import example_robot_data_share
 from nao_kin.urdf.mesh_errors import LargeMeshError
-from nao_kin.view.mesh_files import UnreadableMeshError, read_parts
+from nao_kin.view.meshes import UnreadableMeshError, read_parts
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ from nao_kin.view.crease import split_creases
 from nao_kin.view.meshes import triangulate
 
 if TYPE_CHECKING:
-    from nao_kin.view.mesh_files import Part
+    from nao_kin.view.meshes import Part
 
 
 def body(part: Part) -> trimesh.Trimesh:

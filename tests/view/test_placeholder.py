@@ -10,7 +10,7 @@ import pytest
 
 from nao_kin.robot.robot import load
 from nao_kin.urdf.elements import Box, Inertial, MeshFile, Origin, Solid
-from nao_kin.view.placeholder import COLOUR, EDGE, placeholder_box, sign_corners
+from nao_kin.view.meshes import COLOUR, EDGE, placeholder_box, sign_corners
 from nao_kin.view.record import recorded
 from nao_kin.view.robot_scene import robot_scene
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from nao_kin.ik.aim import goal_violation
 from nao_kin.ik.measure import errors
-from nao_kin.ik.problem import Status
+from nao_kin.ik.problem import Status, verdicts
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.forward import poses
 from nao_kin.kernels.joint_limits import inside_ranges, packed_rules
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = [
     "ABSENT",
     "MEETS",
-    "OUTSIDE",
     "SAME",
     "SOLVED",
     "Certificate",
@@ -46,9 +45,9 @@ SAME: Final = 1e-9
 MEETS: Final = 1e-10
 """A solution that misses by more than this [m, rad] and a thousand times what the best one does is none."""
 
-_STATUSES: Final = tuple(Status)
-SOLVED, OUTSIDE = _STATUSES.index(Status.SOLVED), _STATUSES.index(Status.OUTSIDE_LIMITS)
+SOLVED: Final = Status.SOLVED.number
 ABSENT: Final = -1
+_INSIDE, _OUTSIDE = 1, 0  # what compiled code writes where a target is reached; the verdict is not its own
 
 _TURN: Final = 2.0 * math.pi
 _MOST_TURNS: Final = 1000.0  # a range wider than this is a file's way to say that there is no limit
@@ -99,7 +98,7 @@ class Certificate(NamedTuple):
 
     Attributes:
         q: Joints (N, B, n), NaN where there is no solution.
-        codes: `SOLVED`, `OUTSIDE` or `ABSENT` (N, B).
+        codes: Numbers of `Status` members, or `ABSENT` (N, B).
         branches: Numbers of branch and singularity (N, B, 2).
         position_error: [m] (N, B), NaN where free or absent.
         rotation_error: [rad] (N, B), NaN where free or absent.
@@ -127,6 +126,32 @@ class Certificate(NamedTuple):
         """The same memory for some of the targets."""
         q, codes, branches, position, rotation = self
         return Certificate(q[chunk], codes[chunk], branches[chunk], position[chunk], rotation[chunk])
+
+
+class Wish(NamedTuple):
+    """What is wanted of every goal, inside compiled code.
+
+    Attributes:
+        kind: A value of `nao_kin.ik.target.KINDS`.
+        counted: Bits of the axes that count, see `nao_kin.ik.measure.errors`.
+        allowed: Tolerances (3,): position [m], rotation [rad], limits [rad or m].
+    """
+
+    kind: int
+    counted: int
+    allowed: Floats
+
+
+class Placed(NamedTuple):
+    """Every solution that was written, one after the other.
+
+    Attributes:
+        Q: The chain's joints (M, n).
+        T: Its tip's poses there (M, 4, 4).
+    """
+
+    Q: Floats
+    T: Floats
 
 
 @parallel_jit
@@ -169,7 +194,10 @@ def certify(
     Q = np.empty((int(ends[-1]) if len(ends) else 0, len(written.template)))
     _gather(written, ends, ranges, Q)
     allowed = np.array([tolerances.position, tolerances.rotation, tolerances.limits])
-    _keep(kind, counted, goals, written, ends, Q, poses(path, Q), ranges, allowed, certificate)
+    _keep(Wish(kind, counted, allowed), goals, written, ends, Placed(Q, poses(path, Q)), ranges, certificate)
+    reached = certificate.codes != ABSENT
+    ended = np.full(certificate.codes.shape, SOLVED)
+    certificate.codes[reached] = verdicts(ended, reached, certificate.codes == _INSIDE)[reached]
 
 
 @leaf_jit
@@ -195,38 +223,33 @@ def _gather(written: Written, ends: NDArray[np.int64], ranges: Ranges, Q: Floats
 
 @parallel_jit
 def _keep(
-    kind: int,
-    counted: int,
+    asked: Wish,
     goals: Floats,
     written: Written,
     ends: NDArray[np.int64],
-    Q: Floats,
-    T: Floats,
+    every: Placed,
     ranges: Ranges,
-    allowed: Floats,
     certificate: Certificate,
 ) -> None:
-    """Writes the verdict on every place: measured at Q (M, n), whose poses are T (M, 4, 4)."""
+    """Writes what was measured of every place, and whether it is inside the limits."""
     for i in prange(goals.shape[0]):
         first = ends[i] - written.counts[i]
-        _measure(kind, counted, goals[i], i, first, written, Q, T, ranges, allowed, certificate)
+        _measure(asked, goals[i], i, first, written, every, ranges, certificate)
         _drop(i, certificate)
 
 
 @leaf_jit
 def _measure(
-    kind: int,
-    counted: int,
+    asked: Wish,
     goal: Floats,
     i: int,
     first: int,
     written: Written,
-    Q: Floats,
-    T: Floats,
+    every: Placed,
     ranges: Ranges,
-    allowed: Floats,
     certificate: Certificate,
 ) -> None:
+    Q, T, allowed = every.Q, every.T, asked.allowed
     n, labels = Q.shape[1], written.columns.shape[0]
     for b in range(written.rows.shape[1]):
         m = first + b
@@ -234,12 +257,12 @@ def _measure(
         certificate.branches[i, b, 0], certificate.branches[i, b, 1] = 0, 0
         if b >= written.counts[i]:
             continue
-        position, rotation = errors(kind, goal, counted, T[m, :3, :3], T[m, :3, 3])
+        position, rotation = errors(asked.kind, goal, asked.counted, T[m, :3, :3], T[m, :3, 3])
         # Comparisons with NaN, which stands for an error that the target leaves free, are false.
         if position > allowed[0] or rotation > allowed[1] or not _finite(Q[m]):
             continue
         inside = inside_ranges(ranges.limits, ranges.coupled, Q[m], allowed[2])
-        certificate.codes[i, b] = SOLVED if inside else OUTSIDE
+        certificate.codes[i, b] = _INSIDE if inside else _OUTSIDE
         certificate.position_error[i, b], certificate.rotation_error[i, b] = position, rotation
         certificate.branches[i, b, 0] = int(written.rows[i, b, labels])
         certificate.branches[i, b, 1] = int(written.rows[i, b, labels + 1])

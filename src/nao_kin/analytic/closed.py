@@ -16,8 +16,8 @@ from nao_kin.analytic.solutions import error_of, judged, slack_of, sorted_out
 from nao_kin.arrays import positive
 from nao_kin.chain import configuration, into_limits, neutral
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import layout
-from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_rows, judge_rows, starts_of
+from nao_kin.ik import compiled_loop as loop
+from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_batch, judge_rows, starts_of
 from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.reach import reach_shell
@@ -102,7 +102,7 @@ def solve_closed_batch(
         chunk = slice(first, min(first + CHUNK, len(result)))
         outcomes = _outcomes(chain, found, wanted, chunk, starts[chunk] if len(starts) > 1 else starts, tolerances)
         judge_rows(wanted.first, tolerances, wanted.goals(chunk), outcomes, result, chunk)
-    audit_rows(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
+    audit_batch(result, wanted, tolerances, seed, everything=audit == "all")
     return result
 
 
@@ -168,11 +168,11 @@ def _outcomes(
 ) -> Floats:
     """Rows (N, OUTCOME + n) as the compiled loop writes them; what they claim is for the judge."""
     every = certified(chain, found, wanted, rows, tolerances, slack_of(tolerances))
-    outcomes = np.zeros((len(every.q), layout.OUTCOME + len(chain.joints)))
+    outcomes = np.zeros((len(every.q), loop.OUTCOME + len(chain.joints)))
     q = _wound(chain, every.q, starts[:, None, :], tolerances.limits)
     present, within = every.codes != ABSENT, every.codes == SOLVED
     candidates = within | (present & ~within.any(axis=1, keepdims=True))
-    outcomes[:, layout.OUTCOME :] = q[np.arange(len(q)), _nearest(q, starts[:, None, :], candidates)]
+    outcomes[:, loop.OUTCOME :] = q[np.arange(len(q)), _nearest(q, starts[:, None, :], candidates)]
     missed = np.flatnonzero(~present.any(axis=1))
     if len(missed):
         given = wanted.given[rows][missed]
@@ -187,12 +187,12 @@ def _misses(chain: Chain, found: Matched, wanted: Wanted, starts: Floats, tolera
     border = certified(chain, found, wanted, slice(0, N), replace(tolerances, position=_ANY, rotation=_ANY), math.inf)
     errors = np.fmax(np.nan_to_num(border.position_error), np.nan_to_num(border.rotation_error))
     errors = np.where(border.codes != ABSENT, errors, np.inf)
-    outcomes = np.zeros((N, layout.OUTCOME + len(chain.joints)))
+    outcomes = np.zeros((N, loop.OUTCOME + len(chain.joints)))
     q = _wound(chain, border.q, starts[:, None, :], tolerances.limits)
-    outcomes[:, layout.OUTCOME :] = q[np.arange(N), _nearest(q, starts[:, None, :], _least(errors))]
+    outcomes[:, loop.OUTCOME :] = q[np.arange(N), _nearest(q, starts[:, None, :], _least(errors))]
     for i in np.flatnonzero(np.isinf(errors).all(axis=1)):
-        outcomes[i, layout.OUTCOME :] = into_limits(chain, starts[i if len(starts) > 1 else 0])
+        outcomes[i, loop.OUTCOME :] = into_limits(chain, starts[i if len(starts) > 1 else 0])
     for row, goal in zip(outcomes, wanted.goals(slice(0, N)), strict=True):
-        row[layout.AMOUNT] = _misses_by(chain, wanted.first, goal)
-        row[layout.CODE] = layout.OUT_OF_REACH if row[layout.AMOUNT] else layout.NO_SOLUTION
+        row[loop.AMOUNT] = _misses_by(chain, wanted.first, goal)
+        row[loop.CODE] = loop.OUT_OF_REACH if row[loop.AMOUNT] else loop.NO_SOLUTION
     return outcomes

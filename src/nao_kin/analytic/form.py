@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from nao_kin.ik.target import KINDS
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -43,7 +45,7 @@ __all__ = [
 
 GoalKind: TypeAlias = Literal["pose", "position", "pointing", "orientation", "direction"]
 
-GOALS: Final[dict[GoalKind, int]] = {"pose": 0, "position": 1, "pointing": 2, "orientation": 3, "direction": 4}
+GOALS: Final[dict[GoalKind, int]] = dict[GoalKind, int](KINDS.items()) | {"direction": len(KINDS)}
 """The kinds of goals by the numbers that compiled code knows them by: those of `nao_kin.ik.target.KINDS`, and the
 direction of an axis alone, which is a pointing target whose position has weight 0."""
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from nao_kin.analytic.free_joint import values_of
+import numpy as np
+
 from nao_kin.analytic.solutions import Solutions, solve_all
+from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -37,6 +39,7 @@ def self_motion(
     samples: int = 64,
     locked: Mapping[str, float] | None = None,
     tolerances: Tolerances = TOLERANCES,
+    windings: bool = False,
 ) -> tuple[SelfMotionSample, ...]:
     """Every solution of a target at evenly spaced values of one joint, over its range or one turn.
 
@@ -47,6 +50,7 @@ def self_motion(
         samples: How many values; for a joint without limits the end of the turn is left out.
         locked: Values of further joints by name [rad or m].
         tolerances: When the target counts as reached.
+        windings: See `nao_kin.solve_all`.
 
     Raises:
         InvalidInputError: Not a target, no closed form fits, fewer than two samples, a sliding joint without limits, or
@@ -54,8 +58,32 @@ def self_motion(
         UnknownNameError: No such joint; carries near matches.
     """
     held = dict(locked or {})
-    values = values_of(chain, redundancy, samples, held)
     return tuple(
-        SelfMotionSample(value, solve_all(chain, target, locked=held | {redundancy: value}, tolerances=tolerances))
-        for value in values
+        SelfMotionSample(
+            value,
+            solve_all(chain, target, locked=held | {redundancy: value}, tolerances=tolerances, windings=windings),
+        )
+        for value in _values_of(chain, redundancy, samples, held)
     )
+
+
+def _values_of(chain: Chain, redundancy: str, samples: int, locked: Mapping[str, float]) -> list[float]:
+    """Evenly spaced values over the joint's range, ends included, or over one turn [rad or m].
+
+    Raises:
+        InvalidInputError: Fewer than two samples, a sliding joint without limits, or a joint both free and locked.
+        UnknownNameError: No such joint; carries near matches.
+    """
+    if redundancy not in chain.joint_names:
+        raise UnknownNameError("joint", redundancy, chain.joint_names, chain.name)
+    if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 2:
+        raise InvalidInputError("samples", "an integer ≥ 2", repr(samples))
+    if redundancy in locked:
+        raise InvalidInputError("redundancy", "a joint that is not locked", redundancy)
+    k = chain.joint_names.index(redundancy)
+    low, high = chain.lower[k], chain.upper[k]
+    if np.isfinite(low) and np.isfinite(high):
+        return list(np.linspace(low, high, samples).tolist())
+    if chain.joints[k].kind == "prismatic":
+        raise InvalidInputError("redundancy", "a joint with limits, or one that turns", redundancy)
+    return list(np.linspace(-np.pi, np.pi, samples, endpoint=False).tolist())

@@ -11,9 +11,10 @@ from nao_kin.analytic.certifying import ABSENT, SOLVED, Certificate, Written, ce
 from nao_kin.analytic.form import GOALS, ClosedForm
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.analytic.solutions import slack_of
-from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik.batch import AUDIT_TOLERANCE, AUDITED, Wanted, inside_limits
-from nao_kin.ik.measure import measure_many
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik.auditing import Claimed, audited
+from nao_kin.ik.auditing import audit as audit_rows
+from nao_kin.ik.batch import Wanted
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.se3 import ROTATION_TOLERANCE
 from nao_kin.table import Column, Table
@@ -134,7 +135,7 @@ def solve_all_batch(
         )
     certificate = certified(chain, found, wanted, slice(0, N), tolerances, slack_of(tolerances))
     result = BatchSolutions(chain, found.form, *certificate)
-    _audit(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
+    _audit(result, wanted, tolerances, seed, everything=audit == "all")
     return result
 
 
@@ -178,41 +179,11 @@ def _check(goals: Floats, first: Target, offset: int) -> None:
         raise InvalidInputError(f"target {offset + int(bad[0])}", "a rigid pose, a position, or unit axes", got)
 
 
-def _audit(
-    result: BatchSolutions, wanted: Wanted, tolerances: Tolerances, rng: np.random.Generator, *, everything: bool
-) -> None:
-    """Measures solutions by the chain itself, and judges them in numpy; one disagreement fails the call."""
+def _audit(result: BatchSolutions, wanted: Wanted, tolerances: Tolerances, seed: int, *, everything: bool) -> None:
+    """Measures solutions by the chain itself, see `nao_kin.ik.auditing`."""
     places = np.flatnonzero(result.codes != ABSENT)
-    if not everything and len(places):
-        places = places[rng.choice(len(places), min(len(places), max(AUDITED, len(places) // 100)), replace=False)]
-    if not len(places):
-        return
-    row, place = np.unravel_index(places, result.codes.shape)
-    q, goals = result.q[row, place], wanted.goals(row)
-    position, rotation = measure_many(KINDS[wanted.first.kind], goals, wanted.first.counts, _tips(result.chain, q))
-    slack = AUDIT_TOLERANCE + 1e-12 * np.abs(goals).max(axis=(1, 2))
-    far = np.zeros(len(row), dtype=np.bool_)
-    reached, close_call = np.ones(len(row), dtype=np.bool_), far.copy()
-    for error, ours, allowed in (
-        (position, result.position_error[row, place], tolerances.position),
-        (rotation, result.rotation_error[row, place], tolerances.rotation),
-    ):
-        far |= (np.isnan(error) != np.isnan(ours)) | (np.abs(error - ours) > slack)
-        reached &= ~(error > allowed)
-        close_call |= np.abs(error - allowed) <= slack
-    solved = reached & inside_limits(result.chain, q, tolerances.limits)
-    bad = np.flatnonzero(far | ((solved != (result.codes[row, place] == SOLVED)) & ~close_call))
-    if len(bad):
-        i = int(bad[0])
-        told = f"position {position[i]:.3g} m, rotation {rotation[i]:.3g} rad, {'' if solved[i] else 'not '}solved"
-        at = int(row[i]), int(place[i])
-        ours_told = f"position {result.position_error[at]:.3g} m, rotation {result.rotation_error[at]:.3g} rad"
-        raise AuditError(at[0], told, ours_told)
-
-
-def _tips(chain: Chain, Q: Floats) -> Floats:
-    """The chain's own poses (N, 4, 4)."""
-    T = np.tile(np.eye(4), (len(Q), 1, 1))
-    for pose, q in zip(T, Q, strict=True):
-        pose[:3, :3], pose[:3, 3] = chain.tip_at(q)
-    return T
+    places = places[audited(len(places), np.random.default_rng(seed), everything)]
+    at = row, _ = np.unravel_index(places, result.codes.shape)
+    errors = result.position_error[at], result.rotation_error[at]
+    claimed = Claimed(result.q[at], wanted.goals(row), *errors, result.solved[at])
+    audit_rows(result.chain, wanted.first, claimed, row, tolerances)

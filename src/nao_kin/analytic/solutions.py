@@ -11,7 +11,6 @@ import numpy as np
 
 from nao_kin.analytic.certifying import MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
-from nao_kin.analytic.free_joint import values_of
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.chain import configuration, value_unit
 from nao_kin.errors import InvalidInputError
@@ -119,13 +118,22 @@ def solve_all(
     """
     wanted = Target.of(target)
     if redundancy is not None:
-        held = dict(locked or {})
-        swept = list[IKResult]()
-        for value in values_of(chain, redundancy, samples, held):
-            found_here = solve_all(
-                chain, wanted, locked=held | {redundancy: value}, tolerances=tolerances, windings=windings
-            )
-            swept += (_labelled(result, f"{redundancy} at {value:.6g}") for result in found_here)
+        from nao_kin.analytic.redundancy import self_motion  # it solves for each value by this function
+
+        found_there = self_motion(
+            chain,
+            wanted,
+            redundancy=redundancy,
+            samples=samples,
+            locked=locked,
+            tolerances=tolerances,
+            windings=windings,
+        )
+        swept = [
+            _labelled(result, f"{redundancy} at {sample.value:.6g}")
+            for sample in found_there
+            for result in sample.solutions
+        ]
         return _swept(swept, redundancy)
     problem = Problem(chain, wanted, tolerances)
     found = matched(chain, wanted, locked)

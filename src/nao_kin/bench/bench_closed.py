@@ -13,7 +13,7 @@ from nao_kin.analytic.form import GoalKind
 from nao_kin.analytic.forms import FORMS
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.analytic.nao import nao_arm, nao_head
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik.target import Target
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.robot.urdf_chain import UrdfChain
 
-__all__ = ["Case", "cases", "closed", "found_by", "strata", "unreachable"]
+__all__ = ["FormCase", "cases", "closed", "found_by", "strata", "unreachable"]
 
 _SAME = 1e-9  # [rad]: joints this near are recovered
 _REGULAR = 1e-6  # least singular value from which on a goal says what its joints are to 1e-9
@@ -91,7 +91,7 @@ _NOTES = (
 )
 
 
-def _recovery(case: Case) -> dict[str, Any]:
+def _recovery(case: FormCase) -> dict[str, Any]:
     """Whether the joints that made each goal are among its solutions, and how exact all solutions are."""
     import numpy as np
 
@@ -120,7 +120,7 @@ def _recovery(case: Case) -> dict[str, Any]:
     }
 
 
-def _completeness(case: Case, count: int, starts: int, rng: np.random.Generator) -> dict[str, Any]:
+def _completeness(case: FormCase, count: int, starts: int, rng: np.random.Generator) -> dict[str, Any]:
     """How many solutions Newton finds, and how many of them are not among the closed form's."""
     from dataclasses import replace
 
@@ -143,7 +143,7 @@ def _completeness(case: Case, count: int, starts: int, rng: np.random.Generator)
     return {"by_newton": by_newton, "missing": missing, "searched": len(some.Q)}
 
 
-def _cost(case: Case, rounds: int) -> dict[str, float]:
+def _cost(case: FormCase, rounds: int) -> dict[str, float]:
     """A goal's time on one thread over that of a computeFrameJacobian call, alternating."""
     import numpy as np
     import pinocchio as pin
@@ -174,7 +174,7 @@ def _cost(case: Case, rounds: int) -> dict[str, float]:
     return {"cost": min(times["ours"]) / N / (min(times["theirs"]) / _TIMED)}
 
 
-def _hard(case: Case, count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
+def _hard(case: FormCase, count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
     """Goals at limits, singularities and the border: all have a solution; goals just beyond: none has."""
     from nao_kin.bench.bench_closed import strata, unreachable
 
@@ -184,7 +184,7 @@ def _hard(case: Case, count: int, rng: np.random.Generator) -> list[dict[str, An
     return rows
 
 
-def _hard_row(case: Case, stratum: str, wanted: int) -> dict[str, Any]:
+def _hard_row(case: FormCase, stratum: str, wanted: int) -> dict[str, Any]:
     import numpy as np
 
     from nao_kin.bench.bench_closed import found_by
@@ -260,7 +260,7 @@ def _folded_position(folded: Any, true: Any, wanted: Any, yaws: Any) -> tuple[An
     return miss[np.isfinite(miss)] * 1e3, int(np.isfinite(miss).sum())
 
 
-def _bounds(rows: list[dict[str, Any]]) -> list[Goal]:
+def _bounds(rows: list[dict[str, Any]]) -> list[Promise]:
     least = [
         ("regular goals not recovered", sum(row["regular"] - row["recovered"] for row in rows), 0.0),
         ("goals without solution", sum(row["lost"] for row in rows), 0.0),
@@ -270,14 +270,14 @@ def _bounds(rows: list[dict[str, Any]]) -> list[Goal]:
     for form in dict.fromkeys(row["form"] for row in rows):
         dearest = max((row for row in rows if row["form"] == form), key=lambda row: float(row["cost"]))
         least.append((f"CFJ of {form}, {dearest['goal']}", dearest["cost"], _COSTS.get(form, _OTHER_COST)))
-    return [Goal(what, value, bound, at_least=False) for what, value, bound in least]
+    return [Promise(what, value, bound, at_least=False) for what, value, bound in least]
 
 
-def _hard_bounds(rows: list[dict[str, Any]]) -> list[Goal]:
+def _hard_bounds(rows: list[dict[str, Any]]) -> list[Promise]:
     return [
-        Goal("hard goals answered wrongly", sum(row["wrong"] for row in rows), 0.0, at_least=False),
-        Goal("hard goals with NaN", sum(row["nan"] for row in rows), 0.0, at_least=False),
-        Goal("hard goals, largest residual", max(row["residual"] for row in rows), _RESIDUAL, at_least=False),
+        Promise("hard goals answered wrongly", sum(row["wrong"] for row in rows), 0.0, at_least=False),
+        Promise("hard goals with NaN", sum(row["nan"] for row in rows), 0.0, at_least=False),
+        Promise("hard goals, largest residual", max(row["residual"] for row in rows), _RESIDUAL, at_least=False),
     ]
 
 
@@ -299,7 +299,7 @@ _BEYOND: Final = 3e-6  # [m]: three times what counts as reached
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class FormCase:
     """Goals of one kind for one chain.
 
     Attributes:
@@ -332,7 +332,7 @@ class Case:
         return f"{self.chain.robot.name} {self.chain.tip}"
 
 
-def cases(count: int, rng: np.random.Generator) -> Iterator[Case]:
+def cases(count: int, rng: np.random.Generator) -> Iterator[FormCase]:
     """Every kind of goal that a closed form of a bundled robot takes, at random joints within the limits."""
     from nao_kin.robot.robot import load
 
@@ -342,10 +342,10 @@ def cases(count: int, rng: np.random.Generator) -> Iterator[Case]:
         Q = random_configurations(chain, count, rng)
         for kind in kinds:
             if (found := _form_of(chain, kind)) is not None:
-                yield Case(chain, found, Q, _goals(kind, chain.poses(Q), rng))
+                yield FormCase(chain, found, Q, _goals(kind, chain.poses(Q), rng))
 
 
-def found_by(case: Case) -> BatchSolutions:
+def found_by(case: FormCase) -> BatchSolutions:
     """What the package answers."""
     from nao_kin.analytic.solution_batch import solve_all_batch
 
@@ -354,7 +354,7 @@ def found_by(case: Case) -> BatchSolutions:
     return solve_all_batch(case.chain, targets, locked={names[i]: case.Q[:, i] for i in case.given})
 
 
-def strata(case: Case, count: int, rng: np.random.Generator) -> Iterator[tuple[str, Case]]:
+def strata(case: FormCase, count: int, rng: np.random.Generator) -> Iterator[tuple[str, FormCase]]:
     """The same kind of goals at joint limits, at and near singularities, at the border; by Pinocchio's kinematics."""
     ends = np.array([case.chain.lower, case.chain.upper])
     Q = random_configurations(case.chain, count, rng)
@@ -376,7 +376,7 @@ def strata(case: Case, count: int, rng: np.random.Generator) -> Iterator[tuple[s
         yield "line through the shoulder, off by 1e-3 to 1e-12", _through_shoulder(case, Q, off)
 
 
-def unreachable(case: Case, count: int, rng: np.random.Generator) -> Case | None:
+def unreachable(case: FormCase, count: int, rng: np.random.Generator) -> FormCase | None:
     """Goals of an arm that miss what it reaches by three micrometres, or None of another chain."""
     if not case.found.form.name.startswith("nao_arm") or case.found.kind == "pointing":
         return None
@@ -423,22 +423,22 @@ def _goals(kind: GoalKind, tips: Floats, rng: np.random.Generator) -> Floats:
     return goals
 
 
-def _again(case: Case, Q: Floats, rng: np.random.Generator) -> Case:
+def _again(case: FormCase, Q: Floats, rng: np.random.Generator) -> FormCase:
     tips = np.array([case.chain.pose(q).homogeneous for q in Q])
-    return Case(case.chain, case.found, Q, _goals(case.found.kind, tips, rng))
+    return FormCase(case.chain, case.found, Q, _goals(case.found.kind, tips, rng))
 
 
-def _through_shoulder(case: Case, Q: Floats, off: Floats) -> Case:
+def _through_shoulder(case: FormCase, Q: Floats, off: Floats) -> FormCase:
     """Pointing goals whose line passes the shoulder at about some distance (N, 3) [m]: the arm may turn about it."""
     numbers, goals = case.found.geometry.parameters, np.array([case.chain.pose(q).homogeneous for q in Q])
     lines = goals[:, :3, 3] - numbers[nao_arm.SHOULDER : nao_arm.LENGTH] + off
     lines /= np.linalg.norm(lines, axis=1, keepdims=True)
     axes = np.einsum("nji,nj->ni", goals[:, :3, :3], lines)
     goals[:, :3, 0], goals[:, :3, 1], goals[:, :3, 2] = axes, lines, 0.0
-    return Case(case.chain, case.found, Q, goals)
+    return FormCase(case.chain, case.found, Q, goals)
 
 
-def _singular(case: Case) -> dict[str, dict[int, float]]:
+def _singular(case: FormCase) -> dict[str, dict[int, float]]:
     """Joint values at which a form is singular, by column."""
     numbers = case.found.geometry.parameters
     if case.found.form.name == "nao_head":
@@ -452,7 +452,7 @@ def _singular(case: Case) -> dict[str, dict[int, float]]:
     return {}
 
 
-def _stretched(case: Case, Q: Floats) -> Floats:
+def _stretched(case: FormCase, Q: Floats) -> Floats:
     """The same joints with the elbow roll at which the tip is farthest from the shoulder."""
     p, stretched = case.found.geometry.parameters, Q.copy()
     L, o, (x, y, z) = p[nao_arm.LENGTH], p[nao_arm.OFFSET], p[nao_arm.TIP : nao_arm.TIP + 3]

@@ -9,7 +9,7 @@ import pinocchio as pin
 import typer
 
 from nao_kin.bench.referee import Referee
-from nao_kin.bench.sheet import SOLVED_MEANS, Goal, GoalsOption, Heading, Machine, PeersOption, Sheet, conclude
+from nao_kin.bench.sheet import SOLVED_MEANS, GoalsOption, Heading, Machine, PeersOption, Promise, Sheet, conclude
 from nao_kin.chain import random_configurations
 from nao_kin.output import FormatOption, OutputFormat, progress
 
@@ -63,19 +63,19 @@ def edges(
     conclude(machine, [*sheets, cost, refusals], [*bounds, *more, cheap, refused], notes, format, goals)
 
 
-def _singular(arm: UrdfChain, kinds: dict[str, Floats], peers: bool, notes: list[str]) -> tuple[Sheet, list[Goal]]:
+def _singular(arm: UrdfChain, kinds: dict[str, Floats], peers: bool, notes: list[str]) -> tuple[Sheet, list[Promise]]:
     """Reachable targets where the Jacobian loses rank, or nearly."""
-    from nao_kin.bench.contest import CONTEST_HEADINGS, Task, duels
+    from nao_kin.bench.contest import CONTEST_HEADINGS, SolverTask, duels
     from nao_kin.bench.peers import installed_peers
 
     rows, bounds = list[dict[str, Any]](), []
     for kind, targets in kinds.items():
-        task = Task(arm, targets)
+        task = SolverTask(arm, targets)
         others, said = installed_peers(task) if peers else ([], [])
         notes += [line for line in said if line not in notes]
         found = duels(task, others, 1, kind)
         rows += [row | {"kind": kind} for row in found]
-        bounds.append(Goal(f"{kind}: solved %", found[0]["success"], 100.0))
+        bounds.append(Promise(f"{kind}: solved %", found[0]["success"], 100.0))
     title = f"{arm.name}: reachable targets at singularities [µs]"
     headings = (
         Heading("kind", "target"),
@@ -84,7 +84,7 @@ def _singular(arm: UrdfChain, kinds: dict[str, Floats], peers: bool, notes: list
     return Sheet("singular", title, headings, rows), bounds
 
 
-def _unreachable(arm: UrdfChain, far: dict[float, Floats]) -> tuple[Sheet, list[Goal]]:
+def _unreachable(arm: UrdfChain, far: dict[float, Floats]) -> tuple[Sheet, list[Promise]]:
     """What we say of targets beyond the reach."""
     import nao_kin as nk
     from nao_kin.bench.referee import Referee
@@ -100,8 +100,8 @@ def _unreachable(arm: UrdfChain, far: dict[float, Floats]) -> tuple[Sheet, list[
         row = {"factor": factor, "targets": len(targets), "proven": proven, "false": false}
         rows.append(row | {"solved": sum(result.solved for result in results)})
         if factor >= _PROVEN_FROM:
-            bounds.append(Goal(f"{factor:g} × reach: OUT_OF_REACH %", 100.0 * proven / len(targets), 100.0))
-        bounds.append(Goal(f"{factor:g} × reach: falsely solved", float(false), 0.0, at_least=False))
+            bounds.append(Promise(f"{factor:g} × reach: OUT_OF_REACH %", 100.0 * proven / len(targets), 100.0))
+        bounds.append(Promise(f"{factor:g} × reach: falsely solved", float(false), 0.0, at_least=False))
     headings = (
         Heading("factor", "× reach", "g"),
         Heading("targets", "targets", "d"),
@@ -114,12 +114,12 @@ def _unreachable(arm: UrdfChain, far: dict[float, Floats]) -> tuple[Sheet, list[
 
 def _far_contest(arm: UrdfChain, far: dict[float, Floats]) -> Sheet:
     """What the peers say of the same targets, ours beside them."""
-    from nao_kin.bench.contest import Task, duels
+    from nao_kin.bench.contest import SolverTask, duels
     from nao_kin.bench.peers import installed_peers
 
     rows: list[dict[str, Any]] = []
     for factor, targets in far.items():
-        task = Task(arm, targets[:_FAR_PEER_TARGETS])
+        task = SolverTask(arm, targets[:_FAR_PEER_TARGETS])
         others, _ = installed_peers(task)
         rows += [row | {"factor": factor} for row in duels(task, others, 1, f"{factor:g} × reach")]
     headings = (
@@ -138,14 +138,14 @@ def _far_contest(arm: UrdfChain, far: dict[float, Floats]) -> Sheet:
     )
 
 
-def _cost_of_no(arm: UrdfChain, far: Floats, targets: int, seed: int) -> tuple[Sheet, Goal]:
+def _cost_of_no(arm: UrdfChain, far: Floats, targets: int, seed: int) -> tuple[Sheet, Promise]:
     """A proven "no" against a successful solve, in turns."""
     import numpy as np
 
-    from nao_kin.bench.contest import Contender, Task, contest, ours
+    from nao_kin.bench.contest import Contender, SolverTask, contest, ours
 
     solve = ours(arm)
-    yes = Task.reachable(arm, targets, seed)
+    yes = SolverTask.reachable(arm, targets, seed)
     no = Contender("proven no", solve.call, solve.joints, lambda _: list(far))
     found, refused = contest(yes, [solve, no], _RUNS, "the cost of a no")
     rows = [
@@ -158,24 +158,24 @@ def _cost_of_no(arm: UrdfChain, far: Floats, targets: int, seed: int) -> tuple[S
     ]
     headings = (Heading("what", "answer"), Heading("median", "median", ".1f"), Heading("p95", "p95", ".1f"))
     ratio = float(np.median(refused.times) / np.median(found.times))
-    return Sheet("cost", "what an answer costs [µs]", headings, rows), Goal(
+    return Sheet("cost", "what an answer costs [µs]", headings, rows), Promise(
         "proven no ÷ median solve", ratio, 1.0, at_least=False
     )
 
 
-def _bad_input(arm: UrdfChain, peers: bool) -> tuple[Sheet, Goal]:
+def _bad_input(arm: UrdfChain, peers: bool) -> tuple[Sheet, Promise]:
     """Targets that are none."""
     from nao_kin.bench.bench_edges import bad_targets
-    from nao_kin.bench.contest import Task, ours
+    from nao_kin.bench.contest import SolverTask, ours
     from nao_kin.bench.peers import installed_peers
 
     bad = bad_targets(arm)
-    task = Task.reachable(arm, 1, 0)
+    task = SolverTask.reachable(arm, 1, 0)
     contenders = [ours(arm), *(installed_peers(task, [_BAD_INPUT_PEER])[0] if peers else [])]
     rows = [{"input": what} | {c.name: _verdict(c, T) for c in contenders} for what, T in bad.items()]
     refused = sum(row["nao_kin"] == _REFUSED for row in rows)
     headings = (Heading("input", "target"), *(Heading(c.name, c.name) for c in contenders))
-    goal = Goal("bad targets refused %", 100.0 * refused / len(rows), 100.0)
+    goal = Promise("bad targets refused %", 100.0 * refused / len(rows), 100.0)
     return Sheet("bad_input", "targets that are no rigid pose", headings, rows), goal
 
 

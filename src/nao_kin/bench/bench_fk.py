@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 if TYPE_CHECKING:
@@ -63,12 +63,12 @@ def fk(
     title = f"{configurations} configurations of {chain.name}, median of {rounds} alternations"
     sheet, differences = Sheet("rows", title, _HEADINGS, rows), _differences(samples)
     bounds = [
-        Goal(f"{what}, {_COMPILED}: times the loop", row["over_loop"], _GOALS[what])
+        Promise(f"{what}, {_COMPILED}: times the loop", row["over_loop"], _GOALS[what])
         for row in rows
         if (what := str(row["what"])) and row["by"] == _COMPILED
     ]
     worst = max(max(row["poses"], row["jacobians"]) for row in differences.rows)
-    bounds.append(Goal("largest difference from Pinocchio", worst, _ROUNDING, at_least=False))
+    bounds.append(Promise("largest difference from Pinocchio", worst, _ROUNDING, at_least=False))
     conclude(machine, [sheet, differences], bounds, [*notes, _NOTE], format, goals)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 if TYPE_CHECKING:
@@ -57,17 +57,17 @@ def gait(
     moved = max(float(row["slip"]) for row in rows)
     far = max(float(row["far"]) for row in torsos)
     bounds = [
-        Goal("walks that can be walked", float(sum(row["walkable"] for row in rows)), float(len(rows))),
-        Goal("a standing foot moves [m]", moved, _STANDING_BOUND, at_least=False),
-        Goal("torso motions that can be done", float(sum(row["done"] for row in torsos)), 2.0 * paths),
-        Goal("a NAO's foot moves [m]", far, _TORSO_BOUND, at_least=False),
+        Promise("walks that can be walked", float(sum(row["walkable"] for row in rows)), float(len(rows))),
+        Promise("a standing foot moves [m]", moved, _STANDING_BOUND, at_least=False),
+        Promise("torso motions that can be done", float(sum(row["done"] for row in torsos)), 2.0 * paths),
+        Promise("a NAO's foot moves [m]", far, _TORSO_BOUND, at_least=False),
     ]
     conclude(machine, sheets, bounds, [], format, goals)
 
 
 def _walked(robot: Robot, duration: float, name: str, what: str, way: dict[str, Any]) -> dict[str, Any]:
     from nao_kin.motion.hexapod.gait import walk
-    from nao_kin.motion.hexapod.walk_command import WalkCommand
+    from nao_kin.motion.hexapod.walk_request import WalkCommand
 
     found = walk(robot, WalkCommand(gait=name, duration=duration, **way).at_speed(_SHARES[name]))
     return {
@@ -101,7 +101,7 @@ def _slip(robot: Robot, found: Walk) -> float:
 
 def _speeds(robot: Robot) -> list[dict[str, Any]]:
     from nao_kin.motion.hexapod.gait import fastest
-    from nao_kin.motion.hexapod.walk_command import WalkCommand
+    from nao_kin.motion.hexapod.walk_request import WalkCommand
 
     rows = []
     for name in progress(list(_SHARES), "looking for the greatest speeds", len(_SHARES)):
@@ -117,7 +117,7 @@ def _speeds(robot: Robot) -> list[dict[str, Any]]:
 def _torso(give: str, paths: int, seed: int) -> dict[str, Any]:
     import numpy as np
 
-    from nao_kin.motion.nao.torso import torso_motion
+    from nao_kin.motion.nao.feet import torso_motion
     from nao_kin.robot.robot import load
 
     robot, times, rng = load("nao"), np.linspace(0.0, 4.0, _SAMPLES), np.random.default_rng(seed)

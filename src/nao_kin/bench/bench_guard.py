@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import numpy as np
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -35,17 +35,17 @@ def guard(
     format: FormatOption = OutputFormat.text,
 ) -> None:
     """Random straight motions of a NAO and a JACO2, some into themselves or a table, through the collision guard."""
-    machine, rows, bounds = Machine(), list[dict[str, Any]](), list[Goal]()
+    machine, rows, bounds = Machine(), list[dict[str, Any]](), list[Promise]()
     for robot in _PLANES:
         found = _measured(robot, motions, seed)
         rows += found
         collide, clear, _ = found
         touched = collide["motions"] - collide["stopped"]
         bounds += [
-            Goal(f"{robot}: colliding motions not stopped", float(touched), 0.0, at_least=False),
-            Goal(f"{robot}: least clearance of all, mm", min(row["least"] for row in found), 0.5e3 * _MARGIN - 0.01),
-            Goal(f"{robot}: clear motions stopped", float(clear["stopped"]), 0.0, at_least=False),
-            Goal(f"{robot}: clear motions that arrive, %", 100.0 * clear["arrived"] / clear["motions"], 100.0),
+            Promise(f"{robot}: colliding motions not stopped", float(touched), 0.0, at_least=False),
+            Promise(f"{robot}: least clearance of all, mm", min(row["least"] for row in found), 0.5e3 * _MARGIN - 0.01),
+            Promise(f"{robot}: clear motions stopped", float(clear["stopped"]), 0.0, at_least=False),
+            Promise(f"{robot}: clear motions that arrive, %", 100.0 * clear["arrived"] / clear["motions"], 100.0),
         ]
     conclude(machine, [Sheet("rows", _TITLE, _HEADINGS, rows)], bounds, _NOTES, format, goals)
 

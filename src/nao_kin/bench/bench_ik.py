@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.bench.sheet import SOLVED_MEANS, Goal, GoalsOption, Heading, Machine, PeersOption, Sheet, conclude
+from nao_kin.bench.sheet import SOLVED_MEANS, GoalsOption, Heading, Machine, PeersOption, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from nao_kin.bench.contest import Task
+    from nao_kin.bench.contest import SolverTask
 
 __all__ = ["ik"]
 
@@ -35,18 +35,18 @@ def ik(
 ) -> None:
     """Inverse kinematics of reachable targets: success and time, alone and in batches, on many robots."""
     from nao_kin.bench.arms import main_arm
-    from nao_kin.bench.contest import Task
+    from nao_kin.bench.contest import SolverTask
     from nao_kin.robot.robot import load
 
     machine, (arm, notes) = Machine(), main_arm()
     nao = load("nao_v50_h21").chain("left_arm")
-    sheets, bounds = list[Sheet](), list[Goal]()
+    sheets, bounds = list[Sheet](), list[Promise]()
     batch_rows: list[dict[str, Any]] = []
     for task, many, least in (
-        (Task.reachable(arm, targets, seed), Task.reachable(arm, batch, seed + 1), _POSE_GOALS),
+        (SolverTask.reachable(arm, targets, seed), SolverTask.reachable(arm, batch, seed + 1), _POSE_GOALS),
         (
-            Task.reachable(nao, targets, seed, "position"),
-            Task.reachable(nao, batch, seed + 1, "position"),
+            SolverTask.reachable(nao, targets, seed, "position"),
+            SolverTask.reachable(nao, batch, seed + 1, "position"),
             _POSITION_GOALS,
         ),
     ):
@@ -76,8 +76,8 @@ _BATCH_HEADINGS = (
 
 
 def _arm(
-    task: Task, many: Task, runs: int, peers: bool, least: tuple[float | None, ...]
-) -> tuple[Sheet, dict[str, Any], list[Goal], list[str]]:
+    task: SolverTask, many: SolverTask, runs: int, peers: bool, least: tuple[float | None, ...]
+) -> tuple[Sheet, dict[str, Any], list[Promise], list[str]]:
     """Single solves and batches on one arm: the sheet of single solves, the row of the batch, goals and notes."""
     from nao_kin.bench.contest import CONTEST_HEADINGS, duels
     from nao_kin.bench.peers import installed_peers
@@ -87,24 +87,24 @@ def _arm(
     rows = duels(task, others, runs, name)
     title = f"{name}, one at a time: {len(task.targets)} targets, {runs} runs [µs]"
     sheet = Sheet(f"single_{task.kind}", title, CONTEST_HEADINGS, rows)
-    bounds = [Goal(f"{name}: solved %", rows[0]["success"], 100.0)]
+    bounds = [Promise(f"{name}: solved %", rows[0]["success"], 100.0)]
     reference = next((row for row in rows if row["solver"] == _REFERENCE), None)
     if reference is not None:
         for key, bound in zip(("median", "mean"), least, strict=False):
             if bound is not None:
-                bounds.append(Goal(f"{name}: {_REFERENCE} ÷ ours, {key}", reference[f"{key}_ratio"], bound))
+                bounds.append(Promise(f"{name}: {_REFERENCE} ÷ ours, {key}", reference[f"{key}_ratio"], bound))
     if peers and reference is None:
         notes.append(f"Without {_REFERENCE}, the goals against it are not measured.")
     loop = next((other for other in others if other.name == _REFERENCE), None)
     row = _batch_row(many, name, runs, loop, len(task.targets))
-    bounds.append(Goal(f"{name}, batch: solved %", row["success"], 100.0))
-    bounds.append(Goal(f"{name}, batch: same bits always", float(row["same_bits"]), 1.0))
+    bounds.append(Promise(f"{name}, batch: solved %", row["success"], 100.0))
+    bounds.append(Promise(f"{name}, batch: same bits always", float(row["same_bits"]), 1.0))
     if row["ratio"] is not None and least[2] is not None:
-        bounds.append(Goal(f"{name}, batch: {_REFERENCE} ÷ ours", row["ratio"], least[2]))
+        bounds.append(Promise(f"{name}, batch: {_REFERENCE} ÷ ours", row["ratio"], least[2]))
     return sheet, row, bounds, notes
 
 
-def _batch_row(task: Task, name: str, runs: int, loop: Any, share: int) -> dict[str, Any]:
+def _batch_row(task: SolverTask, name: str, runs: int, loop: Any, share: int) -> dict[str, Any]:
     """A batch against a peer's loop over a share of the same targets, in turns."""
     import statistics
 
@@ -145,15 +145,15 @@ def _batch_row(task: Task, name: str, runs: int, loop: Any, share: int) -> dict[
     }
 
 
-def _many_robots(targets: int, seed: int) -> tuple[Sheet, list[Goal], list[str]]:
+def _many_robots(targets: int, seed: int) -> tuple[Sheet, list[Promise], list[str]]:
     """Reachable targets of many robots, default settings."""
     from nao_kin.bench.arms import many_chains
-    from nao_kin.bench.contest import Task, contest, contest_rows, ours
+    from nao_kin.bench.contest import SolverTask, contest, contest_rows, ours
 
     chains, missing = many_chains()
     rows = []
     for chain, kind in chains:
-        task = Task.reachable(chain, targets, seed, kind)
+        task = SolverTask.reachable(chain, targets, seed, kind)
         row = contest_rows(contest(task, [ours(chain)], 1, chain.name))[0]
         rows.append(row | {"chain": chain.name, "joints": len(chain.joints), "kind": kind})
     headings = (
@@ -166,6 +166,6 @@ def _many_robots(targets: int, seed: int) -> tuple[Sheet, list[Goal], list[str]]
         Heading("mean", "mean", ".1f"),
     )
     worst = min(rows, key=lambda row: float(row["success"]))
-    goal = Goal(f"fewest solved %, {worst['chain']}", worst["success"], _MANY_GOAL)
+    goal = Promise(f"fewest solved %, {worst['chain']}", worst["success"], _MANY_GOAL)
     title = f"many robots, {targets} reachable targets each, default settings [µs]"
     return Sheet("robots", title, headings, rows), [goal], missing

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -44,10 +44,10 @@ def loop(
     rows = [_row("peer commands", commanding), _row("peer is silent", silent)]
     share = 100.0 * commanding.met / max(1, commanding.met + commanding.missed)
     bounds = [
-        Goal("commands in time while the peer commands, %", share, _IN_TIME),
-        Goal("messages refused", float(commanding.refused + silent.refused), 0.0, at_least=False),
-        Goal("cycles in silence not counted as missed", float(silent.met), 0.0, at_least=False),
-        Goal("motion at the end of the silence, rad/s", moved, 0.0, at_least=False),
+        Promise("commands in time while the peer commands, %", share, _IN_TIME),
+        Promise("messages refused", float(commanding.refused + silent.refused), 0.0, at_least=False),
+        Promise("cycles in silence not counted as missed", float(silent.met), 0.0, at_least=False),
+        Promise("motion at the end of the silence, rad/s", moved, 0.0, at_least=False),
     ]
     title = f"12 ms cycles over a {'Unix' if unix else 'TCP'} socket on this machine"
     conclude(machine, [Sheet("rows", title, _HEADINGS, rows)], bounds, _NOTES, format, goals)

@@ -11,7 +11,7 @@ import typer
 
 import nao_kin as nk
 from nao_kin.bench.method_sets import LONG
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.errors import MissingExtraError
 from nao_kin.ik.methods import METHODS
 from nao_kin.output import FormatOption, OutputFormat
@@ -182,17 +182,17 @@ def _two_hands(count: int, seed: int) -> Sheet:
     return Sheet("two_hands", title, headings, rows)
 
 
-def _easy_goals(outcomes: list[Outcome]) -> list[Goal]:
+def _easy_goals(outcomes: list[Outcome]) -> list[Promise]:
     """At least 99 % of the near targets for every method, the worst of its arms; see `_SLOW_TO_POSES`."""
     worst: dict[str, float] = {}
     for outcome in outcomes:
         if outcome.of.kind == "position" or outcome.method not in _SLOW_TO_POSES:
             worst[outcome.method] = min(worst.get(outcome.method, 100.0), outcome.success)
     few = min(worst, key=worst.__getitem__)
-    return [Goal(f"near targets, every method but those listed below, % ({few})", worst[few], _ENOUGH)]
+    return [Promise(f"near targets, every method but those listed below, % ({few})", worst[few], _ENOUGH)]
 
 
-def _restart_goals(outcomes: list[Outcome]) -> list[Goal]:
+def _restart_goals(outcomes: list[Outcome]) -> list[Promise]:
     """Full range with restarts on the NAO arm, within a second a target: the worst method."""
     reached = {
         outcome.method: 100.0 * float((outcome.solved & (outcome.seconds <= _SECOND)).mean())
@@ -201,13 +201,13 @@ def _restart_goals(outcomes: list[Outcome]) -> list[Goal]:
     }
     few = min(reached, key=reached.__getitem__)
     text = f"NAO arm, full range, in 1 s, every method but the transposes, % ({few})"
-    return [Goal(text, reached[few], _ENOUGH)]
+    return [Promise(text, reached[few], _ENOUGH)]
 
 
-def _honesty(outcomes: list[Outcome]) -> Goal:
+def _honesty(outcomes: list[Outcome]) -> Promise:
     runs = sum(len(outcome.solved) for outcome in outcomes)
     false = sum(outcome.false for outcome in outcomes)
-    return Goal(f"false successes in {runs} runs", float(false), 0.0, at_least=False)
+    return Promise(f"false successes in {runs} runs", float(false), 0.0, at_least=False)
 
 
 def _misses(outcomes: list[Outcome]) -> list[str]:

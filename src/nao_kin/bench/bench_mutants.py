@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ def mutants(
     ]
     unexcused = sum(not trial.excuse for trial in survivors)
     bounds = [
-        Goal("spoilt copies whose verdict is fails, %", everything["share"], _ENOUGH),
-        Goal("copies that survive without a reason", float(unexcused), 0.0, at_least=False),
+        Promise("spoilt copies whose verdict is fails, %", everything["share"], _ENOUGH),
+        Promise("copies that survive without a reason", float(unexcused), 0.0, at_least=False),
     ]
     conclude(machine, sheets, bounds, [], format, goals)
 

@@ -8,7 +8,7 @@ from typing import Annotated, Final
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 __all__ = ["page"]
@@ -68,8 +68,8 @@ def page(
     )
     sheet = Sheet("rows", f"pages in a warm process, median of {rounds} rounds", headings, rows)
     bounds = [
-        Goal("nao's page / import pinocchio", medians["nao"] / medians["import"], 1.0, at_least=False),
-        Goal("nao's page [MB]", sizes["nao"], 1.5, at_least=False),
+        Promise("nao's page / import pinocchio", medians["nao"] / medians["import"], 1.0, at_least=False),
+        Promise("nao's page [MB]", sizes["nao"], 1.5, at_least=False),
     ]
     conclude(machine, [sheet], bounds, [], format, goals)
 

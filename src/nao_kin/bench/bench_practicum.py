@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def practicum(
     import numpy as np
 
     machine, rng = Machine(), np.random.default_rng(seed)
-    sheets, answers, bounds = list[Sheet](), list[str](), list[Goal]()
+    sheets, answers, bounds = list[Sheet](), list[str](), list[Promise]()
     for name, where, distance in _DISTANCES:
         starts, wanted = _problems(targets, distance, rng)
         runs = _both(starts, wanted, where)
@@ -44,8 +44,8 @@ def practicum(
         checked, faults, silent = _checked(starts, wanted, name, where)
         sheets.append(checked)
         answers += ["", _answer(where, rows), faults]
-        bounds.append(Goal(f"1e, {where}: pseudo-inverse < 1 cm, %", rows[0]["pseudo_reached"], 90.0))
-        bounds.append(Goal(f"1g, {where}: faults not reported", float(silent), 0.0, at_least=False))
+        bounds.append(Promise(f"1e, {where}: pseudo-inverse < 1 cm, %", rows[0]["pseudo_reached"], 90.0))
+        bounds.append(Promise(f"1g, {where}: faults not reported", float(silent), 0.0, at_least=False))
     reasons = not_converging(targets, seed)
     headings = (
         Heading("reason", "1h: why"),
@@ -93,7 +93,7 @@ def _both(starts: Floats, wanted: Floats, where: str) -> dict[str, Floats]:
     import numpy as np
 
     from nao_kin.documents.practicum.position_ik import ik_pseudo_inverse, ik_transpose
-    from nao_kin.documents.practicum.sheet import jaco2
+    from nao_kin.documents.practicum.practicum_sheet import jaco2
     from nao_kin.ik.scales import chain_scales
     from nao_kin.output import progress
 
@@ -141,7 +141,7 @@ def _checked(starts: Floats, wanted: Floats, name: str, where: str) -> tuple[She
     import numpy as np
 
     from nao_kin.documents.practicum.position_ik import LARGEST_JUMP, ik_checked
-    from nao_kin.documents.practicum.sheet import jaco2
+    from nao_kin.documents.practicum.practicum_sheet import jaco2
     from nao_kin.output import progress
 
     arm, pairs = jaco2(), list(zip(starts, wanted, strict=True))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 if TYPE_CHECKING:
@@ -48,11 +48,11 @@ def reach(
     gigabytes = _peak_gigabytes()
     ratio = sum(row["map_ms"] for row in rows) / sum(row["fk_ms"] for row in rows)
     bounds = [
-        Goal("both maps: times bare forward kinematics", ratio, _TIMES, at_least=False),
-        Goal("peak memory of the process [GB]", gigabytes, _GIGABYTES, at_least=False),
+        Promise("both maps: times bare forward kinematics", ratio, _TIMES, at_least=False),
+        Promise("peak memory of the process [GB]", gigabytes, _GIGABYTES, at_least=False),
     ]
     same, notes = _cluster(chains, maps, each, workers)
-    bounds += [] if same is None else [Goal("maps that Dask makes the same to the last bit", same, len(maps))]
+    bounds += [] if same is None else [Promise("maps that Dask makes the same to the last bit", same, len(maps))]
     title = f"{each} configurations a hand, cubes of {maps[0].voxel:g} m, median of {rounds} alternations"
     conclude(machine, [Sheet("maps", title, _HEADINGS, rows)], bounds, [_NOTE, *notes], format, goals)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import numpy as np
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def servo(
     rows = [_row(name, plant, paced, integral) for name, plant, integral in cases]
     flat_out = [_row(name, plant, fastest, integral) for name, plant, integral in cases]
     bounds = [
-        Goal(f"{row['case']}: {size} error falls, times", row[key], _ENOUGH) for row in rows for size, key in _SIZES
+        Promise(f"{row['case']}: {size} error falls, times", row[key], _ENOUGH) for row in rows for size, key in _SIZES
     ]
     sheets = [
         Sheet("rows", _TITLE, _HEADINGS, rows),
@@ -96,7 +96,7 @@ _NOTES = (
 
 
 def _row(case: str, plant: Plant, reference: Trajectory, integral: bool) -> dict[str, Any]:
-    from nao_kin.motion.loop.tuning import P_OVERSHOOT, compare_feed_forward, tune
+    from nao_kin.motion.loop.servo import P_OVERSHOOT, compare_feed_forward, tune
 
     times, allowed = (_INTEGRAL_TIMES, _PI_OVERSHOOT) if integral else ((), P_OVERSHOOT)
     gains = tune(plant, reference, integral_times=times, allowed=allowed, period=_PERIOD)

@@ -15,7 +15,7 @@ from nao_kin.analytic.six_r.six_r_bent_wrist import BRANCHES, SAMPLES, solve_den
 from nao_kin.analytic.solution_batch import solve_all_batch
 from nao_kin.bench.measuring import in_turns, one_thread
 from nao_kin.bench.peers import product_of_exponentials
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.ik.target import Target
 from nao_kin.kernels.audit import tips
 from nao_kin.output import FormatOption, OutputFormat, progress
@@ -81,7 +81,7 @@ def sixr(
         Sheet("general", "random arms without structure, one pose each", _GENERAL_HEADINGS, [general]),
     ]
     bounds = [*_bounds(rows), *_general_bounds(general), *demanded]
-    bounds.append(Goal("singular poses without solution", sum(row["lost"] for row in hard), 0.0, at_least=False))
+    bounds.append(Promise("singular poses without solution", sum(row["lost"] for row in hard), 0.0, at_least=False))
     notes = list(_NOTES)
     if peers:
         beside, missed, left_out = rivals({arm.name: arm.chain for arm in arms}, rng)
@@ -279,20 +279,20 @@ def _general(geometries: int, rng: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def _bounds(rows: list[dict[str, Any]]) -> list[Goal]:
+def _bounds(rows: list[dict[str, Any]]) -> list[Promise]:
     return [
-        Goal("regular poses not recovered", sum(row["unrecovered"] for row in rows), 0.0, at_least=False),
-        Goal("largest residual", max(row["residual"] for row in rows), _RESIDUAL, at_least=False),
-        Goal("solutions that only Newton found", sum(row["missing"] for row in rows), 0.0, at_least=False),
-        Goal("solutions that are not finite", sum(row["nan"] for row in rows), 0.0, at_least=False),
+        Promise("regular poses not recovered", sum(row["unrecovered"] for row in rows), 0.0, at_least=False),
+        Promise("largest residual", max(row["residual"] for row in rows), _RESIDUAL, at_least=False),
+        Promise("solutions that only Newton found", sum(row["missing"] for row in rows), 0.0, at_least=False),
+        Promise("solutions that are not finite", sum(row["nan"] for row in rows), 0.0, at_least=False),
     ]
 
 
-def _general_bounds(row: dict[str, Any]) -> list[Goal]:
+def _general_bounds(row: dict[str, Any]) -> list[Promise]:
     return [
-        Goal("any arm, recovered", row["recovered"] / row["targets"], 0.999),
-        Goal("any arm, solutions that only Newton found", row["missing"], 0.0, at_least=False),
-        Goal("any arm, largest residual", row["residual"], _RESIDUAL, at_least=False),
+        Promise("any arm, recovered", row["recovered"] / row["targets"], 0.999),
+        Promise("any arm, solutions that only Newton found", row["missing"], 0.0, at_least=False),
+        Promise("any arm, largest residual", row["residual"], _RESIDUAL, at_least=False),
     ]
 
 
@@ -315,12 +315,12 @@ _BENT_HEADINGS = (
 
 def dense_and_singular(
     chain: UrdfChain, found: Matched, targets: int, rng: np.random.Generator
-) -> tuple[Sheet, list[Goal]]:
+) -> tuple[Sheet, list[Promise]]:
     """The sheet, and what is demanded of it: random poses, and a twentieth as many of each singular family."""
     families = [("random", rng.uniform(-np.pi, np.pi, (targets, 6))), *_families(chain, max(50, targets // 20), rng)]
     rows = [_bent_row(chain, found, name, Q) for name, Q in families]
     demanded = [
-        Goal(f"JACO2, poses {words}", sum(row[key] for row in rows), 0.0, at_least=False)
+        Promise(f"JACO2, poses {words}", sum(row[key] for row in rows), 0.0, at_least=False)
         for key, words in (
             ("none", "without solution"),
             ("lost", "that lose their own joints"),
@@ -413,9 +413,9 @@ _RIVAL_HEADINGS = (
 )
 
 
-def rivals(chains: Mapping[str, UrdfChain], rng: np.random.Generator) -> tuple[Sheet, list[Goal], list[str]]:
+def rivals(chains: Mapping[str, UrdfChain], rng: np.random.Generator) -> tuple[Sheet, list[Promise], list[str]]:
     """The sheet, what is demanded of it, and lines about packages that are left out."""
-    rows, goals, left_out = list[dict[str, Any]](), list[Goal](), list[str]()
+    rows, goals, left_out = list[dict[str, Any]](), list[Promise](), list[str]()
     for arm, peer, setup, bound in _PEERS:
         if importlib.util.find_spec(peer.replace("-", "_")) is None:
             left_out.append(f"Without {peer}: to have it beside, pip install {peer}.")
@@ -425,7 +425,7 @@ def rivals(chains: Mapping[str, UrdfChain], rng: np.random.Generator) -> tuple[S
         if bound is None:
             continue
         for how in ("kernel", "judged"):
-            goals.append(Goal(f"{arm}, times faster than {peer}, {how}", row[f"{how}_ratio"], bound))
+            goals.append(Promise(f"{arm}, times faster than {peer}, {how}", row[f"{how}_ratio"], bound))
     return Sheet("peers", "time a pose with all branches, one thread, batches", _RIVAL_HEADINGS, rows), goals, left_out
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat, progress
 
 __all__ = ["startup"]
@@ -66,7 +66,8 @@ def startup(
     )
     sheet = Sheet("rows", f"whole processes, median of {rounds} rounds", headings, rows)
     bounds = [
-        Goal(f"{name} / {ref}", medians[name] / medians[ref], bound, at_least=False) for name, _, ref, bound in _STARTUP
+        Promise(f"{name} / {ref}", medians[name] / medians[ref], bound, at_least=False)
+        for name, _, ref, bound in _STARTUP
     ]
     conclude(machine, [sheet], bounds, [], format, goals)
 

@@ -9,7 +9,7 @@ import typer
 
 from nao_kin.bench.measuring import timed
 from nao_kin.bench.referee import REACHED, Referee
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.chain import random_configurations
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.reference_loop import Budget
@@ -64,19 +64,19 @@ def tips(
     conclude(machine, [hands, beyond, reach], [*solved, *honest, *gained], _NOTES, format, goals)
 
 
-def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]]:
+def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Promise]]:
     """Targets of several tips that some joints reach."""
     from nao_kin.bench.bench_tips import attempt, reachable_wishes
 
-    rows, bounds = list[dict[str, Any]](), list[Goal]()
+    rows, bounds = list[dict[str, Any]](), list[Promise]()
     for base in _BASES:
         for what, kind, tip_names, priority in _TOUR:
             tree = robot.tree(base, tip_names)
             wishes: list[Wish] = reachable_wishes(tree, kind, targets, seed)
             row = attempt(tree, wishes, f"{what} from {base}", priority=priority or None)
             rows.append({"base": base, "what": what} | row)
-            bounds.append(Goal(f"{base}: {what}, solved %", row["solved"], _SOLVED_PERCENT))
-    bounds.append(Goal("reachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
+            bounds.append(Promise(f"{base}: {what}, solved %", row["solved"], _SOLVED_PERCENT))
+    bounds.append(Promise("reachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("what", "both hands"),
@@ -88,7 +88,7 @@ def _reachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]
     return Sheet("reachable", f"{robot.name}: {targets} targets each, several tips at once", headings, rows), bounds
 
 
-def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goal]]:
+def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Promise]]:
     """The right hand wanted where it mostly cannot be, the left one where it can."""
     from nao_kin.bench.bench_tips import attempt, reachable_wishes, with_far_tip
     from nao_kin.ik.reference_loop import Budget
@@ -100,11 +100,11 @@ def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goa
         row = attempt(tree, wishes, f"unreachable from {base}", priority=priority or None, budget=few)
         rows.append({"base": base, "priority": "left first" if priority else "alike"} | row)
     bounds = [
-        Goal(f"{base}: left first, left hand served %", row["LArm"], _SOLVED_PERCENT)
+        Promise(f"{base}: left first, left hand served %", row["LArm"], _SOLVED_PERCENT)
         for (base, priority), row in zip(_FAR_TOUR, rows, strict=True)
         if priority
     ]
-    bounds.append(Goal("unreachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
+    bounds.append(Promise("unreachable, falsely solved", sum(row["false"] for row in rows), 0.0, at_least=False))
     headings = (
         Heading("base", "base"),
         Heading("priority", "hands count"),
@@ -116,17 +116,17 @@ def _unreachable(robot: Robot, targets: int, seed: int) -> tuple[Sheet, list[Goa
     return Sheet("unreachable", "the right hand's target moved up to 0.5 m away", headings, rows), bounds
 
 
-def _reach(robot: Robot, samples: int, seed: int) -> tuple[Sheet, list[Goal]]:
+def _reach(robot: Robot, samples: int, seed: int) -> tuple[Sheet, list[Promise]]:
     """The right hand's reach standing still, and with the whole body on one foot."""
     from nao_kin.bench.bench_tips import AXES, farthest_along
 
-    rows, bounds = list[dict[str, Any]](), list[Goal]()
+    rows, bounds = list[dict[str, Any]](), list[Promise]()
     for what, axis in AXES.items():
         still = farthest_along(robot, "torso", ("RArm",), axis, samples, seed)
         moving = farthest_along(robot, "l_sole", ("RArm",), axis, samples, seed)
         both = farthest_along(robot, "l_sole", _HANDS, axis, samples, seed)
         rows.append({"what": what, "still": still, "moving": moving, "gain": moving - still, "both": both})
-        bounds.append(Goal(f"{what}: gain from the legs [m]", moving - still, 0.0))
+        bounds.append(Promise(f"{what}: gain from the legs [m]", moving - still, 0.0))
     headings = (
         Heading("what", "as far as possible"),
         Heading("still", "torso standing", ".4f"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from nao_kin.bench.sheet import Goal, GoalsOption, Heading, Machine, Sheet, conclude
+from nao_kin.bench.sheet import GoalsOption, Heading, Machine, Promise, Sheet, conclude
 from nao_kin.output import FormatOption, OutputFormat
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.trajectory.following import FollowResult
 
-__all__ = ["Comparison", "compare", "trajectory"]
+__all__ = ["InterpolationComparison", "compare", "trajectory"]
 
 _START_DEG: Final = (180, 200, 120, 100, 80, 30)  # of the JACO2
 _LINES: Final = (
@@ -44,7 +44,7 @@ def trajectory(
     from nao_kin.trajectory.demand import ROUNDING
 
     machine = Machine()
-    sheets, bounds, notes = list[Sheet](), list[Goal](), list[str]()
+    sheets, bounds, notes = list[Sheet](), list[Promise](), list[str]()
     if importlib.util.find_spec("ruckig") is None:
         notes.append("ruckig is not installed, so no durations are compared: pip install 'nao_kin[dev]'.")
     else:
@@ -52,23 +52,23 @@ def trajectory(
         row = {"cases": cases, "worst": worst}
         headings = (Heading("cases", "profiles", "d"), Heading("worst", "largest difference [s]", ".2g"))
         sheets.append(Sheet("profiles", "Least durations beside ruckig's with infinite jerk", headings, [row]))
-        bounds.append(Goal("durations, largest difference from ruckig's [s]", worst, 1e-6, at_least=False))
+        bounds.append(Promise("durations, largest difference from ruckig's [s]", worst, 1e-6, at_least=False))
     followed = {name: _followed(by) for name, by in _LINES}
     rows = [_line_row(name, found) for name, found in followed.items()]
     sheets.append(
         Sheet("lines", f"Straight lines of the JACO2, {_SAMPLES} samples, {_SECONDS} s", _LINE_HEADINGS, rows)
     )
     reached = [row for row in rows if row["completed"]]
-    bounds.append(Goal("lines, error at samples [m]", max(row["error"] for row in reached), 1e-6, at_least=False))
+    bounds.append(Promise("lines, error at samples [m]", max(row["error"] for row in reached), 1e-6, at_least=False))
     fastest = max(row["after"] for row in rows)
-    bounds.append(Goal("lines, speed over limit after scaling", fastest, 1.0 + ROUNDING, at_least=False))
+    bounds.append(Promise("lines, speed over limit after scaling", fastest, 1.0 + ROUNDING, at_least=False))
     unnamed = sum(found.cause.name in ("NONE", "NOT_REACHED") for found in followed.values() if not found.completed)
-    bounds.append(Goal("lines that end without a named reason", float(unnamed), 0.0, at_least=False))
+    bounds.append(Promise("lines that end without a named reason", float(unnamed), 0.0, at_least=False))
     found = compare(targets, seed)
     sheets.append(
         Sheet("task_2b", f"2b: {targets} targets 0.2 to 0.6 m away, from a random start", _2B_HEADINGS, found.rows)
     )
-    bounds.append(Goal("2b: lines finished off the line by ≥ 1 cm", float(found.off_line), 0.0, at_least=False))
+    bounds.append(Promise("2b: lines finished off the line by ≥ 1 cm", float(found.off_line), 0.0, at_least=False))
     endings = [f"{name}: {result.reason}" for name, result in followed.items() if not result.completed]
     conclude(machine, sheets, bounds, [*notes, *endings, "", *_answer(found), "", *_NOTES], format, goals)
 
@@ -169,7 +169,7 @@ def _line_row(name: str, found: FollowResult) -> dict[str, Any]:
     }
 
 
-def _answer(found: Comparison) -> list[str]:
+def _answer(found: InterpolationComparison) -> list[str]:
     direct, stepwise = found.rows
     missed = "" if stepwise["reached"] == 100.0 else " The others stop at a point that is known."
     return [
@@ -188,7 +188,7 @@ _FINE: Final = 20  # places at which a move between two sets of joints is looked
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class InterpolationComparison:
     """Both ways.
 
     Attributes:
@@ -208,7 +208,7 @@ class _Trip:
     off: float
 
 
-def compare(count: int, seed: int) -> Comparison:
+def compare(count: int, seed: int) -> InterpolationComparison:
     """Random starts inside the limits, and positions 0.2 to 0.6 m away that the arm can reach."""
     import numpy as np
 
@@ -226,7 +226,7 @@ def compare(count: int, seed: int) -> Comparison:
     trips = [(_direct(arm, q, p), _stepwise(arm, q, p)) for q, p in progress(problems, "task 2b", count)]
     direct, stepwise = zip(*trips, strict=True)
     off_line = sum(trip.reached and trip.off >= _ENOUGH for trip in stepwise)
-    return Comparison((_row("in one go", direct), _row("1 cm steps", stepwise)), off_line)
+    return InterpolationComparison((_row("in one go", direct), _row("1 cm steps", stepwise)), off_line)
 
 
 def _direct(arm: Chain, q: Floats, p: Floats) -> _Trip:

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.robot.urdf_chain import UrdfChain
 
-__all__ = ["CONTEST_HEADINGS", "Contender", "Score", "TargetKind", "Task", "contest", "contest_rows", "duels", "ours"]
+__all__ = [
+    "CONTEST_HEADINGS",
+    "Contender",
+    "Score",
+    "SolverTask",
+    "TargetKind",
+    "contest",
+    "contest_rows",
+    "duels",
+    "ours",
+]
 
 TargetKind: TypeAlias = Literal["pose", "position"]
 
@@ -38,7 +48,7 @@ CONTEST_HEADINGS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class SolverTask:
     """What all solvers are asked.
 
     Attributes:
@@ -56,7 +66,7 @@ class Task:
         object.__setattr__(self, "start", neutral(self.chain))
 
     @classmethod
-    def reachable(cls, chain: UrdfChain, count: int, seed: int, kind: TargetKind = "pose") -> Task:
+    def reachable(cls, chain: UrdfChain, count: int, seed: int, kind: TargetKind = "pose") -> SolverTask:
         """Targets that Pinocchio's forward kinematics of random joints within the limits gives."""
         referee, Q = Referee(chain), random_configurations(chain, count, np.random.default_rng(seed))
         return cls(chain, np.array([referee.pose(q) for q in Q]).reshape(-1, 4, 4), kind)
@@ -83,7 +93,7 @@ class Contender:
     name: str
     call: Callable[[Any], Any]
     joints: Callable[[Any], Floats | None]
-    prepare: Callable[[Task], Sequence[Any]] = lambda task: list(task.targets)
+    prepare: Callable[[SolverTask], Sequence[Any]] = lambda task: list(task.targets)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +130,7 @@ def ours(chain: UrdfChain) -> Contender:
     )
 
 
-def contest(task: Task, contenders: Sequence[Contender], runs: int, what: str) -> list[Score]:
+def contest(task: SolverTask, contenders: Sequence[Contender], runs: int, what: str) -> list[Score]:
     """Every contender on every target, `runs` times, in turns of a few targets each."""
     referee, count = Referee(task.chain), len(task.targets)
     inputs = [contender.prepare(task) for contender in contenders]
@@ -140,7 +150,7 @@ def contest(task: Task, contenders: Sequence[Contender], runs: int, what: str) -
     return [_score(task, referee, c.name, times[k], found[k]) for k, c in enumerate(contenders)]
 
 
-def _score(task: Task, referee: Referee, name: str, times: Floats, found: Sequence[Floats | None]) -> Score:
+def _score(task: SolverTask, referee: Referee, name: str, times: Floats, found: Sequence[Floats | None]) -> Score:
     def confirmed(within: tuple[float, float]) -> int:
         pairs = zip(found, task.targets, strict=True)
         only = task.kind == "position"
@@ -150,7 +160,7 @@ def _score(task: Task, referee: Referee, name: str, times: Floats, found: Sequen
     return Score(name, times, claimed, confirmed(REACHED), confirmed(NEAR))
 
 
-def duels(task: Task, peers: Sequence[Contender], runs: int, what: str) -> list[dict[str, Any]]:
+def duels(task: SolverTask, peers: Sequence[Contender], runs: int, what: str) -> list[dict[str, Any]]:
     """Our row, and a row of each peer with its ratio to ours in a contest between these two alone.
 
     All in one contest would not be fair to the quick ones: after a solver that works for milliseconds a target, the

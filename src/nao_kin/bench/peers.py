@@ -20,7 +20,7 @@ from nao_kin.bench.referee import Referee
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
-    from nao_kin.bench.contest import Task
+    from nao_kin.bench.contest import SolverTask
     from nao_kin.robot.urdf_chain import UrdfChain
 
 __all__ = ["PEERS", "Peer", "Unsuited", "installed_peers", "product_of_exponentials"]
@@ -44,10 +44,10 @@ class Peer:
     name: str
     package: str
     module: str
-    make: Callable[[Task], Contender]
+    make: Callable[[SolverTask], Contender]
 
 
-def installed_peers(task: Task, only: Container[str] | None = None) -> tuple[list[Contender], list[str]]:
+def installed_peers(task: SolverTask, only: Container[str] | None = None) -> tuple[list[Contender], list[str]]:
     """The peers that are installed and do this task, and lines about those that are left out."""
     found, left_out = [], dict[str, list[str]]()
     for peer in (peer for peer in PEERS.values() if only is None or peer.name in only):
@@ -58,7 +58,7 @@ def installed_peers(task: Task, only: Container[str] | None = None) -> tuple[lis
     return found, [f"Without {', '.join(names)}: {reason}." for reason, names in left_out.items()]
 
 
-def _set_up(peer: Peer, task: Task) -> Contender:
+def _set_up(peer: Peer, task: SolverTask) -> Contender:
     if importlib.util.find_spec(peer.module) is None:
         raise Unsuited(f"to have it beside, pip install {peer.package}")
     try:
@@ -69,7 +69,7 @@ def _set_up(peer: Peer, task: Task) -> Contender:
         raise Unsuited(f"its import fails ({error})") from error
 
 
-def _roboticstoolbox(task: Task) -> Contender:
+def _roboticstoolbox(task: SolverTask) -> Contender:
     """`ik_LM` on the chain's own geometry; at its default tolerance it stops a millimetre short.
 
     The tolerance is one on half the squared error, so at 1e-12 a few answers stop between 1 and 1.4 µm or µrad.
@@ -94,7 +94,7 @@ def _roboticstoolbox(task: Task) -> Contender:
     )
 
 
-def _ssik(task: Task) -> Contender:
+def _ssik(task: SolverTask) -> Contender:
     """Its ready-made arm of the same name, if that is the same arm; deriving another one takes it a minute."""
     _only_poses(task)
     chain = task.chain
@@ -114,7 +114,7 @@ def _ssik(task: Task) -> Contender:
     )
 
 
-def _eaik(task: Task) -> Contender:
+def _eaik(task: SolverTask) -> Contender:
     """All closed-form branches, the first one inside the limits; it takes axes H and points P and no tool rotation."""
     _only_poses(task)
     H, P, R_last_tip = product_of_exponentials(task.chain)
@@ -132,7 +132,7 @@ def _eaik(task: Task) -> Contender:
     return Contender("eaik", call, lambda q: q)
 
 
-def _ik_geo(task: Task) -> Contender:
+def _ik_geo(task: SolverTask) -> Contender:
     """All closed-form branches, the first one inside the limits; it takes rotations column by column."""
     _only_poses(task)
     if task.chain.robot.name not in ("ur3", "ur5", "ur10"):
@@ -148,7 +148,7 @@ def _ik_geo(task: Task) -> Contender:
     return Contender("ik-geo", call, lambda q: q)
 
 
-def _pink(task: Task) -> Contender:
+def _pink(task: SolverTask) -> Contender:
     """A frame task with full Gauss-Newton steps, at most 100; it has no restarts."""
     import pinocchio as pin
 
@@ -180,7 +180,7 @@ def _pink(task: Task) -> Contender:
     return Contender("pink", call, lambda q: q)
 
 
-def _pytracik(task: Task) -> Contender:
+def _pytracik(task: SolverTask) -> Contender:
     """TRAC-IK with time for restarts; its tolerance holds for each component, and its default is too coarse here."""
     _only_poses(task)
     chain = task.chain
@@ -194,7 +194,7 @@ def _pytracik(task: Task) -> Contender:
     )
 
 
-def _only_poses(task: Task) -> None:
+def _only_poses(task: SolverTask) -> None:
     if task.kind != "pose":
         raise Unsuited("full poses only")
 

@@ -15,7 +15,7 @@ from nao_kin.output import OutputFormat, report, report_json
 if TYPE_CHECKING:
     from nao_kin.table import Table
 
-__all__ = ["SOLVED_MEANS", "Goal", "GoalsOption", "Heading", "Machine", "PeersOption", "Sheet", "conclude"]
+__all__ = ["SOLVED_MEANS", "GoalsOption", "Heading", "Machine", "PeersOption", "Promise", "Sheet", "conclude"]
 
 GoalsOption = Annotated[bool, typer.Option("--goals/--no-goals", help="Exit with 1 when a goal is missed.")]
 PeersOption = Annotated[bool, typer.Option("--peers", help="Measure every installed peer beside.")]
@@ -67,7 +67,7 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class Goal:
+class Promise:
     """A promise and what was measured of it.
 
     Attributes:
@@ -128,7 +128,7 @@ def _versions(*packages: str) -> dict[str, str]:
 def conclude(
     machine: Machine,
     sheets: Sequence[Sheet],
-    goals: Sequence[Goal],
+    goals: Sequence[Promise],
     notes: Sequence[str],
     format: OutputFormat,
     enforce: bool,
@@ -157,7 +157,7 @@ def conclude(
         raise typer.Exit(1)
 
 
-def _goal_table(goals: Sequence[Goal]) -> Table:
+def _goal_table(goals: Sequence[Promise]) -> Table:
     from nao_kin.table import Column, Style, Table
 
     columns = (Column("goal"), Column("is", number=True), Column("should be", number=True), Column("met"))

@@ -46,8 +46,8 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
 }
 """The commands, in the order of the help; each is the function of that name in `cli/NAME_command.py`."""
 
-_MODULES: Final = {"bench": "nao_kin.bench", "trajectory": "nao_kin.cli.trajectory"}
-"""Commands with commands of their own, which are packages."""
+_MODULES: Final = {"bench": "nao_kin.bench"}
+"""Commands that live elsewhere."""
 
 
 def application(names: Iterable[str] = COMMANDS) -> typer.Typer:

@@ -143,19 +143,19 @@ def _print(found: Report, format: CheckFormat, threshold: Severity) -> None:
             colour = wants_colour()
             typer.echo(as_text(found, colour=colour), color=colour)
         case CheckFormat.json:
-            from nao_kin.checks.formats.data import as_data
+            from nao_kin.checks.formats.machine import as_data
 
             report_json(as_data(found))
         case CheckFormat.sarif:
-            from nao_kin.checks.formats.sarif import as_sarif
+            from nao_kin.checks.formats.machine import as_sarif
 
             report_json(as_sarif(found))
         case CheckFormat.junit:
-            from nao_kin.checks.formats.junit import as_junit
+            from nao_kin.checks.formats.machine import as_junit
 
             typer.echo(as_junit(found, threshold), nl=False)
         case CheckFormat.github:
-            from nao_kin.checks.formats.github import as_github
+            from nao_kin.checks.formats.machine import as_github
 
             typer.echo(as_github(found), nl=len(found) > 0)
 

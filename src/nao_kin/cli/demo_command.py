@@ -81,7 +81,7 @@ def _poses() -> list[dict[str, Any]]:
     import numpy as np
 
     from nao_kin.cli.fk_command import pose_data
-    from nao_kin.documents.practicum.sheet import CHECK_Q_DEG, CHECK_T_BASE_HAND
+    from nao_kin.documents.practicum.practicum_sheet import CHECK_Q_DEG, CHECK_T_BASE_HAND
 
     nao, jaco2 = _chains()
     check = np.radians(CHECK_Q_DEG)

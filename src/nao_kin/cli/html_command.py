@@ -41,7 +41,7 @@ def html(
     model = load(robot)
     if gait is not None:
         from nao_kin.motion.hexapod.gait import walk
-        from nao_kin.motion.hexapod.walk_command import WalkCommand
+        from nao_kin.motion.hexapod.walk_request import WalkCommand
 
         typer.echo(f"wrote {export_html(output, model, walk(model, WalkCommand(gait=gait)), max_mb=max_mb)}", err=True)
         return

@@ -46,7 +46,7 @@ def _print(found: Ledger, format: LedgerFormat) -> None:
     if format is LedgerFormat.json:
         report_json(found.rows())
     elif format is LedgerFormat.html:
-        from nao_kin.documents.erratum_page import as_html
+        from nao_kin.documents.erratum import as_html
 
         typer.echo(as_html(found))
     else:

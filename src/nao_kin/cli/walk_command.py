@@ -39,7 +39,7 @@ def walk(
     """
     from nao_kin.motion.hexapod.gait import fastest
     from nao_kin.motion.hexapod.gait import walk as walked
-    from nao_kin.motion.hexapod.walk_command import WalkCommand
+    from nao_kin.motion.hexapod.walk_request import WalkCommand
     from nao_kin.robot.robot import load
 
     model = load(robot)

@@ -12,8 +12,7 @@ import pinocchio as pin
 
 from nao_kin.arrays import Floats, frozen
 from nao_kin.chain import random_configurations
-from nao_kin.collision.levers import pair_levers
-from nao_kin.collision.shapes import Body, Plane, link_bodies, plane_body
+from nao_kin.collision.shapes import CollisionBody, Plane, link_bodies, plane_body
 from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.robot.motors import Motors
 from nao_kin.table import Column, Table
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
     from nao_kin.robot.robot import Robot
 
-__all__ = ["DISTANCE_ACCURACY", "CollisionModel", "Excluded", "Proximity"]
+__all__ = ["DISTANCE_ACCURACY", "CollisionModel", "Excluded", "Proximity", "pair_levers"]
 
 DISTANCE_ACCURACY: Final = 1e-5
 """What a measured distance may be off by [m]: coal iterates to 1e-6 of its own."""
@@ -99,7 +98,7 @@ class CollisionModel:
         self.motors = Motors.of(robot)
         bodies, self.notes = link_bodies(robot)
         _check_names(self.planes, robot)
-        self.bodies: tuple[Body, ...] = (*bodies, *map(plane_body, self.planes))
+        self.bodies: tuple[CollisionBody, ...] = (*bodies, *map(plane_body, self.planes))
         pairs, excluded = self._sorted_pairs(ignored)
         self._load(pairs)
         always = self._always_touching()
@@ -246,3 +245,40 @@ def _neighbours(model: pin.Model, shaped: set[int]) -> set[frozenset[int]]:
         above = int(model.parents[joint])
         nearest[joint] = above if above in shaped or above == 0 else nearest[above]
     return {frozenset({joint, nearest[joint]}) for joint in shaped if joint}
+
+
+def pair_levers(motors: Motors, bodies: Sequence[CollisionBody], pairs: Sequence[tuple[int, int]]) -> Floats:
+    """Levers (P, n) of every pair for every motor [m/rad, or m/m for prismatic joints].
+
+    A motor that moves neither body against the other has lever 0.
+    """
+    to_body = [_levers(motors, body) for body in bodies]
+    levers = np.zeros((len(pairs), len(motors.joints)))
+    for row, (i, j) in enumerate(pairs):
+        apart = set(to_body[i]) ^ set(to_body[j])  # joints above both move them alike
+        for body in (i, j):
+            for joint, lever in to_body[body].items():
+                if joint in apart:
+                    levers[row] += lever * np.abs(motors.spread[joint])
+    return levers
+
+
+def _levers(motors: Motors, body: CollisionBody) -> dict[int, float]:
+    """For each moving joint above a body, by its place in file order, how far from its axis the body may ever be."""
+    model, names, found, distance, joint = motors.robot.model, motors.robot.joint_names, {}, body.reach, body.joint
+    while joint:
+        place = names.index(model.names[joint])
+        prismatic = motors.robot.moving_joints[place].kind == "prismatic"
+        found[place] = 1.0 if prismatic else distance
+        if prismatic:
+            distance += _travel(motors, place)
+        distance += float(np.linalg.norm(model.jointPlacements[joint].translation))
+        joint = model.parents[joint]
+    return found
+
+
+def _travel(motors: Motors, place: int) -> float:
+    """Greatest offset of a prismatic joint from its zero [m]; infinite where it has no limits."""
+    row, shift = motors.spread[place], motors.shift[place]
+    (column,) = np.flatnonzero(row)
+    return float(max(abs(row[column] * end + shift) for end in (motors.lower[column], motors.upper[column])))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nao_kin.robot.robot import Robot
     from nao_kin.urdf.elements import Shape
 
-__all__ = ["Body", "Plane", "coal_shape", "link_bodies", "plane_body"]
+__all__ = ["CollisionBody", "Plane", "coal_shape", "link_bodies", "plane_body"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -56,7 +56,7 @@ class Plane:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Body:
+class CollisionBody:
     """One rigid shape.
 
     Attributes:
@@ -88,12 +88,12 @@ def coal_shape(shape: Shape) -> Any:
     return None
 
 
-def link_bodies(robot: Robot) -> tuple[tuple[Body, ...], tuple[str, ...]]:
+def link_bodies(robot: Robot) -> tuple[tuple[CollisionBody, ...], tuple[str, ...]]:
     """The collision shapes of all links, and a sentence about each that cannot be taken.
 
     Meshes are not: without their convex hulls they are surfaces, and one inside another would count as apart.
     """
-    model, bodies, notes = robot.model, list[Body](), list[str]()
+    model, bodies, notes = robot.model, list[CollisionBody](), list[str]()
     for link in robot.document.links:
         frame = model.frames[model.getFrameId(link.name, pin.FrameType.BODY)]
         for solid in link.collisions:
@@ -106,10 +106,10 @@ def link_bodies(robot: Robot) -> tuple[tuple[Body, ...], tuple[str, ...]]:
             placement = frame.placement * from_xyz_rpy(solid.origin.xyz, solid.origin.rpy)
             shape.computeLocalAABB()
             reach = float(np.linalg.norm(placement.act(shape.aabb_center)) + shape.aabb_radius)
-            bodies.append(Body(link.name, int(frame.parentJoint), placement, shape, reach))
+            bodies.append(CollisionBody(link.name, int(frame.parentJoint), placement, shape, reach))
     return tuple(bodies), tuple(notes)
 
 
-def plane_body(plane: Plane) -> Body:
+def plane_body(plane: Plane) -> CollisionBody:
     """A plane as a body that nothing moves."""
-    return Body(plane.name, 0, pin.SE3.Identity(), coal.Halfspace(plane.normal, plane.offset), np.inf)
+    return CollisionBody(plane.name, 0, pin.SE3.Identity(), coal.Halfspace(plane.normal, plane.offset), np.inf)

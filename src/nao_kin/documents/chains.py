@@ -63,7 +63,11 @@ DOCUMENT_CHAINS: Final[dict[str, DocumentChain]] = {
         "MATLAB example, getKinematicChain('lefthand')",
     ),
     "practicum_jaco2": DocumentChain(
-        ("practicum.sheet", "jaco2"), "jaco2", "link_base", "end_effector", "Practicum task 1, Kinova's constants"
+        ("practicum.practicum_sheet", "jaco2"),
+        "jaco2",
+        "link_base",
+        "end_effector",
+        "Practicum task 1, Kinova's constants",
     ),
     "kofinas_head": DocumentChain(("kofinas", "head"), "nao_v33_h25", "torso", "Head", _KOFINAS),
     "kofinas_left_arm": DocumentChain(("kofinas", "arm", "left"), "nao_v33_h25", "torso", "LArm", _KOFINAS),

@@ -8,8 +8,9 @@ column a unit axis in tip axes and its second column the unit axis in base axes 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, NamedTuple
 
+from nao_kin.ik.target import ORIENTATION, POINTING, POSE, POSITION
 from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
@@ -20,16 +21,26 @@ __all__ = [
     "POINTING",
     "POSE",
     "POSITION",
+    "SweepGoal",
     "goal_violation",
     "raw_error",
     "rotation_vector",
     "shape_rows",
 ]
 
-POSE: Final = 0
-POSITION: Final = 1
-POINTING: Final = 2
-ORIENTATION: Final = 3
+
+class SweepGoal(NamedTuple):
+    """What the geometric methods head for.
+
+    Attributes:
+        kind: What is wanted, a value of `nao_kin.ik.target.KINDS`.
+        goal: The target (4, 4).
+        closeness: Weight of the squared distance [1/m²] against the rotation, see `nao_kin.ik.starts`.
+    """
+
+    kind: int
+    goal: Floats
+    closeness: float
 
 
 @leaf_jit

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
 import numpy as np
 
 from nao_kin.arrays import rows
-from nao_kin.errors import AuditError, InvalidInputError
-from nao_kin.ik import layout
-from nao_kin.ik.compiled import ENDED, solve_goals
+from nao_kin.errors import InvalidInputError
+from nao_kin.ik import compiled_loop as loop
+from nao_kin.ik.auditing import Claimed, audited, inside_limits
+from nao_kin.ik.auditing import audit as audit_rows
+from nao_kin.ik.compiled import solve_goals
 from nao_kin.ik.measure import measure_many
-from nao_kin.ik.problem import Problem, Run, Status, judge
+from nao_kin.ik.problem import STATUSES, Problem, Status, verdicts
 from nao_kin.ik.single import prepared, start_of
 from nao_kin.ik.target import KINDS, Target
 from nao_kin.table import Column, Table
@@ -30,13 +32,10 @@ if TYPE_CHECKING:
     from nao_kin.ik.reference_loop import Budget
 
 __all__ = [
-    "AUDITED",
-    "AUDIT_TOLERANCE",
     "CHUNK",
     "BatchResult",
     "Wanted",
-    "audit_rows",
-    "inside_limits",
+    "audit_batch",
     "judge_rows",
     "solve_batch",
     "starts_of",
@@ -45,14 +44,7 @@ __all__ = [
 CHUNK: Final = 1 << 16
 """Targets worked on at a time: scratch memory does not grow with the batch."""
 
-AUDITED: Final = 64
-"""Rows of a batch that are measured a third time, by the chain itself; or a hundredth of them, if that is more."""
-
-AUDIT_TOLERANCE: Final = 1e-9
-"""How far apart two measurements of the same joints may be [m, rad], and more where numbers are large."""
-
 _LONG: Final = 500_000  # targets from which on a bar shows the progress on a terminal
-_STATUSES: Final = tuple(Status)
 
 
 @dataclass(eq=False, slots=True)
@@ -90,12 +82,12 @@ class BatchResult:
     @property
     def solved(self) -> NDArray[np.bool_]:
         """Whether each row is within tolerance and limits (N,)."""
-        return np.asarray(self.codes == _STATUSES.index(Status.SOLVED))
+        return np.asarray(self.codes == Status.SOLVED.number)
 
     @property
     def status(self) -> NDArray[np.object_]:
         """Why each row ended (N,), `Status` members."""
-        return np.array(_STATUSES, dtype=object)[self.codes]
+        return np.array(STATUSES, dtype=object)[self.codes]
 
     def __len__(self) -> int:
         return len(self.q)
@@ -105,8 +97,8 @@ class BatchResult:
 
     def counts(self) -> dict[Status, int]:
         """How many rows ended for which reason."""
-        found = np.bincount(self.codes, minlength=len(_STATUSES))
-        return {status: int(count) for status, count in zip(_STATUSES, found, strict=True) if count}
+        found = np.bincount(self.codes, minlength=len(STATUSES))
+        return {status: int(count) for status, count in zip(STATUSES, found, strict=True) if count}
 
     def __repr__(self) -> str:
         told = ", ".join(f"{count} {status.name}" for status, count in self.counts().items())
@@ -144,7 +136,7 @@ def solve_batch(
         outcomes = solve_goals(ready.tables, ready.settings, goals, np.ascontiguousarray(own))
         _refuse(outcomes, chunk.start)
         judge_rows(wanted.first, tolerances, goals, outcomes, result, chunk)
-    audit_rows(result, wanted, tolerances, np.random.default_rng(seed), everything=audit == "all")
+    audit_batch(result, wanted, tolerances, seed, everything=audit == "all")
     return result
 
 
@@ -220,11 +212,11 @@ def _chunks(count: int) -> Iterator[slice]:
 
 def _refuse(outcomes: Floats, offset: int) -> None:
     """Raises for the first row whose target or start made no sense."""
-    bad = np.flatnonzero(outcomes[:, layout.CODE] < 0.0)
+    bad = np.flatnonzero(outcomes[:, loop.CODE] < 0.0)
     if not len(bad):
         return
-    row, amount = offset + int(bad[0]), float(outcomes[bad[0], layout.AMOUNT])
-    if outcomes[bad[0], layout.CODE] == layout.BAD_START:
+    row, amount = offset + int(bad[0]), float(outcomes[bad[0], loop.AMOUNT])
+    if outcomes[bad[0], loop.CODE] == loop.BAD_START:
         raise InvalidInputError(f"q0 of row {row}", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     raise InvalidInputError(f"target {row}", "a rigid pose, a position, or unit axes", got)
@@ -236,54 +228,18 @@ def judge_rows(
     """Measures a chunk again and writes its verdicts, by the same rules as `nao_kin.ik.problem.judge`."""
     from nao_kin.kernels.audit import tips
 
-    chain, q = result.chain, np.ascontiguousarray(outcomes[:, layout.OUTCOME :])
+    chain, q = result.chain, np.ascontiguousarray(outcomes[:, loop.OUTCOME :])
     position, rotation = measure_many(KINDS[first.kind], goals, first.counts, tips(chain.joint_path, q))
     reached = ~((position > tolerances.position) | (rotation > tolerances.rotation)) & np.isfinite(q).all(axis=1)
     inside = inside_limits(chain, q, tolerances.limits)
-    codes = outcomes[:, layout.CODE].astype(np.int8)
-    ended = np.array([_STATUSES.index(status) for status in ENDED], dtype=np.int8)[codes]
-    ended[ended == _STATUSES.index(Status.SOLVED)] = _STATUSES.index(Status.STALLED)
-    ended[reached & inside] = _STATUSES.index(Status.SOLVED)
-    ended[reached & ~inside] = _STATUSES.index(Status.OUTSIDE_LIMITS)
-    result.q[chunk], result.codes[chunk] = q, ended
+    result.q[chunk], result.codes[chunk] = q, verdicts(outcomes[:, loop.CODE].astype(np.intp), reached, inside)
     result.position_error[chunk], result.rotation_error[chunk] = position, rotation
-    result.iterations[chunk] = outcomes[:, layout.ITERATIONS]
+    result.iterations[chunk] = outcomes[:, loop.ITERATIONS]
 
 
-def inside_limits(chain: Chain, q: Floats, tolerance: float) -> NDArray[np.bool_]:
-    """Whether every joint of each row (N, n) is within its own and its coupled range, give or take the tolerance."""
-    inside = ((q >= chain.lower - tolerance) & (q <= chain.upper + tolerance)).all(axis=1)
-    index = {name: i for i, name in enumerate(chain.joint_names)}
-    for rule in chain.limit_rules:
-        by, limited = q[:, index[rule.by]], q[:, index[rule.joint]]
-        value = np.abs(by) if rule.even else by
-        lower, upper = np.interp(value, rule.at, rule.lower), np.interp(value, rule.at, rule.upper)
-        inside &= (limited >= lower - tolerance) & (limited <= upper + tolerance)
-    return np.asarray(inside)
-
-
-def audit_rows(
-    result: BatchResult,
-    wanted: Wanted,
-    tolerances: Tolerances,
-    rng: np.random.Generator,
-    *,
-    everything: bool,
-) -> None:
-    """Measures rows by the chain itself; one disagreement fails the call."""
-    N = len(result)
-    count = N if everything else min(N, max(AUDITED, N // 100))
-    for i in range(N) if everything else rng.choice(N, count, replace=False) if N else ():
-        target = Target(wanted.first.kind, wanted.goals(slice(i, i + 1))[0], wanted.first.weights)
-        problem = Problem(result.chain, target, tolerances)
-        measured = judge(problem, Run(result.q[i].copy(), _STATUSES[result.codes[i]]))
-        pairs = (
-            (measured.position_error, result.position_error[i], tolerances.position),
-            (measured.rotation_error, result.rotation_error[i], tolerances.rotation),
-        )
-        # What rounding allows grows with the numbers: an angle of 1e8 rad has lost half its digits.
-        slack = AUDIT_TOLERANCE + 1e-14 * np.abs(result.q[i]).max() + 1e-12 * np.abs(target.goal).max()
-        far = any(a is not None and a != b and not abs(a - b) <= slack for a, b, _ in pairs)
-        close_call = any(a is not None and abs(a - limit) <= slack for a, _, limit in pairs)
-        if far or (measured.solved != bool(result.solved[i]) and not close_call):
-            raise AuditError(int(i), str(measured), f"position {pairs[0][1]:.3g} m, rotation {pairs[1][1]:.3g} rad")
+def audit_batch(result: BatchResult, wanted: Wanted, tolerances: Tolerances, seed: int, *, everything: bool) -> None:
+    """Measures rows by the chain itself, see `nao_kin.ik.auditing`."""
+    rows = audited(len(result), np.random.default_rng(seed), everything)
+    errors = result.position_error[rows], result.rotation_error[rows]
+    claimed = Claimed(result.q[rows], wanted.goals(rows), *errors, result.solved[rows])
+    audit_rows(result.chain, wanted.first, claimed, rows, tolerances)

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import aim, layout
-from nao_kin.ik import compiled_loop as descent
+from nao_kin.ik import aim
+from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.orientation import ROTATION_VECTOR
-from nao_kin.ik.problem import Run, Status, Trace
+from nao_kin.ik.problem import STATUSES, Run, Trace
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.rules import LEVENBERG_MARQUARDT
 from nao_kin.ik.starts import make_starts
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.joint_limits import packed_rules
-from nao_kin.kernels.motion import packed_joints
+from nao_kin.kernels.motion import Arm, packed_joints
 from nao_kin.se3 import ROTATION_TOLERANCE
 
 if TYPE_CHECKING:
@@ -31,24 +31,14 @@ if TYPE_CHECKING:
     from nao_kin.ik.reference_loop import Budget
     from nao_kin.tolerances import Tolerances
 
-__all__ = ["ENDED", "KINDS", "Tables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
+__all__ = ["KINDS", "ChainTables", "run_of", "settings_of", "solve_goal", "solve_goals", "tables_of", "trace_rows"]
 
 _ROUNDING: Final = 1e-12  # relative; a stretched arm reaches the outer radius up to rounding, and that counts as inside
 _SEEDS_KEPT: Final = 16  # who runs through many seeds shall not fill the memory
-# By the codes of `nao_kin.ik.compiled_loop`, which count from 0.
-ENDED: Final = (
-    Status.SOLVED,
-    Status.STALLED,
-    Status.BUDGET_SPENT,
-    Status.OUT_OF_REACH,
-    Status.NOT_FINITE,
-    Status.NO_SOLUTION,
-)
-"""Why a run ended, by the codes of `nao_kin.ik.layout`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Tables:
+class ChainTables:
     """A chain as the compiled loop reads it; see `nao_kin.ik.compiled_loop.solve_one` for the arrays.
 
     Attributes:
@@ -72,10 +62,10 @@ class Tables:
     work_size: int
 
 
-_TABLES: weakref.WeakKeyDictionary[Chain, dict[int, Tables]] = weakref.WeakKeyDictionary()
+_TABLES: weakref.WeakKeyDictionary[Chain, dict[int, ChainTables]] = weakref.WeakKeyDictionary()
 
 
-def tables_of(chain: Chain, seed: int = 0) -> Tables:
+def tables_of(chain: Chain, seed: int = 0) -> ChainTables:
     """The tables of a chain, made once a seed; the seed decides the stored starts."""
     try:
         return _TABLES[chain][seed]
@@ -87,11 +77,11 @@ def tables_of(chain: Chain, seed: int = 0) -> Tables:
         return tables
 
 
-def _tables(chain: Chain, seed: int) -> Tables:
+def _tables(chain: Chain, seed: int) -> ChainTables:
     starts, shell = make_starts(chain, np.random.default_rng(seed)), reach_shell(chain)
-    joints, size = packed_joints(chain.joint_path), layout.OUTCOME + len(chain.joints)
+    joints, size = packed_joints(chain.joint_path), loop.OUTCOME + len(chain.joints)
     limits, coupled = np.array([chain.lower, chain.upper]), packed_rules(chain.limit_rules, chain.joint_names)
-    return Tables(
+    return ChainTables(
         joints=joints,
         limits=limits,
         coupled=coupled,
@@ -99,12 +89,12 @@ def _tables(chain: Chain, seed: int) -> Tables:
         closeness=starts.closeness,
         shell=np.array([*shell.centre, shell.inner * (1.0 - _ROUNDING), shell.outer * (1.0 + _ROUNDING)]),
         outcome_size=size,
-        work_size=size + descent.scratch_size(joints, starts.table),
+        work_size=size + loop.scratch_size(joints, starts.table),
     )
 
 
 def settings_of(
-    tables: Tables,
+    tables: ChainTables,
     kind: int,
     rule: int,
     budget: Budget,
@@ -128,30 +118,30 @@ def settings_of(
         parameters: Those of the rule, in its order.
         orientation_error: A form of it, see `nao_kin.ik.orientation`.
     """
-    settings = np.zeros(layout.SETTINGS)
-    settings[layout.KIND], settings[layout.RULE] = kind, rule
-    settings[layout.MAX_ITERATIONS], settings[layout.RESTARTS] = budget.iterations, budget.restarts
-    settings[layout.PATIENCE], settings[layout.LARGEST_STEP] = budget.patience, budget.largest_step
-    settings[layout.FROM_STORED] = from_stored
-    settings[layout.POSITION_TOLERANCE], settings[layout.ROTATION_TOLERANCE] = (
+    settings = np.zeros(loop.SETTINGS)
+    settings[loop.KIND], settings[loop.RULE] = kind, rule
+    settings[loop.MAX_ITERATIONS], settings[loop.RESTARTS] = budget.iterations, budget.restarts
+    settings[loop.PATIENCE], settings[loop.LARGEST_STEP] = budget.patience, budget.largest_step
+    settings[loop.FROM_STORED] = from_stored
+    settings[loop.POSITION_TOLERANCE], settings[loop.ROTATION_TOLERANCE] = (
         tolerances.position,
         tolerances.rotation,
     )
-    settings[layout.GOAL_TOLERANCE] = ROTATION_TOLERANCE
-    settings[layout.WEIGHTS : layout.WEIGHTS + 6] = weights
-    settings[layout.CENTRE : layout.OUTER + 1] = tables.shell
-    settings[layout.CLOSENESS] = tables.closeness
-    settings[layout.ORIENTATION_ERROR] = orientation_error
-    settings[layout.GAINS : layout.GAINS + len(parameters)] = parameters
+    settings[loop.GOAL_TOLERANCE] = ROTATION_TOLERANCE
+    settings[loop.WEIGHTS : loop.WEIGHTS + 6] = weights
+    settings[loop.CENTRE : loop.OUTER + 1] = tables.shell
+    settings[loop.CLOSENESS] = tables.closeness
+    settings[loop.ORIENTATION_ERROR] = orientation_error
+    settings[loop.GAINS : loop.GAINS + len(parameters)] = parameters
     return settings
 
 
 def trace_rows(outcome: Floats, n: int) -> Floats:
     """Room for the trace of a solve with this outcome: a row (q, position error, rotation error, start) an iterate."""
-    return np.empty((int(outcome[layout.ITERATIONS] + outcome[layout.STARTS]), n + 3))
+    return np.empty((int(outcome[loop.ITERATIONS] + outcome[loop.STARTS]), n + 3))
 
 
-def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
+def solve_goal(tables: ChainTables, settings: Floats, goal: Floats, q0: Floats, trace: Floats | None = None) -> Floats:
     """Solves for one target; returns the outcome, see `compiled_loop`. Nothing passed in is changed but `trace`.
 
     Args:
@@ -165,28 +155,29 @@ def solve_goal(tables: Tables, settings: Floats, goal: Floats, q0: Floats, trace
     if trace is None:
         work = np.empty(t.work_size)
         memory = _memory(tables, settings)
-        descent.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
+        loop.solve_quickly(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, work, memory)
         return work[: t.outcome_size]
     outcome, scratch, memory = np.empty(t.outcome_size), np.empty(t.work_size - t.outcome_size), _memory(t, settings)
-    descent.solve_one(t.joints, t.limits, t.coupled, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
+    arm = Arm(t.joints, t.limits, t.coupled)
+    loop.solve_one(arm, t.stored, settings, goal, q0, outcome, trace, scratch, memory)
     return outcome
 
 
-def _memory(tables: Tables, settings: Floats) -> Floats | None:
+def _memory(tables: ChainTables, settings: Floats) -> Floats | None:
     """What methods other than the default need besides."""
-    if settings[layout.RULE] == LEVENBERG_MARQUARDT:
+    if settings[loop.RULE] == LEVENBERG_MARQUARDT:
         return None
-    return np.empty(descent.memory_size(tables.joints, tables.limits.shape[1]))
+    return np.empty(loop.memory_size(tables.joints, tables.limits.shape[1]))
 
 
-def solve_goals(tables: Tables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
+def solve_goals(tables: ChainTables, settings: Floats, goals: Floats, q0: Floats) -> Floats:
     """Solves for many targets (N, 4, 4) on all cores, from q0 (N, n), or (1, n) for all; outcomes in rows.
 
     An outcome is the same to the last bit as that of `solve_goal`, whatever the other targets and however many threads.
     """
     t = tables
     outcomes, memory = np.empty((len(goals), t.outcome_size)), _memory(t, settings)
-    descent.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, t.work_size, memory)
+    loop.solve_many(t.joints, t.limits, t.coupled, t.stored, settings, goals, q0, outcomes, memory)
     return outcomes
 
 
@@ -202,16 +193,16 @@ def run_of(outcome: Floats, kind: int, trace: Floats | None = None) -> Run:
         InvalidInputError: The target or the start made no sense; carries the size of the violation.
     """
     told = outcome.tolist()
-    code, iterations, starts = int(told[layout.CODE]), int(told[layout.ITERATIONS]), int(told[layout.STARTS])
+    code, iterations, starts = int(told[loop.CODE]), int(told[loop.ITERATIONS]), int(told[loop.STARTS])
     if code < 0:
-        raise _refusal(code, told[layout.AMOUNT])
+        raise _refusal(code, told[loop.AMOUNT])
     iterates = None if trace is None else _trace(trace[: iterations + starts], kind)
-    moved, amount = told[layout.START_MOVED] != 0.0, told[layout.AMOUNT]
-    return Run(outcome[layout.OUTCOME :], ENDED[code], iterations, starts, moved, amount, "", iterates)
+    moved, amount = told[loop.START_MOVED] != 0.0, told[loop.AMOUNT]
+    return Run(outcome[loop.OUTCOME :], STATUSES[code], iterations, starts, moved, amount, "", iterates)
 
 
 def _refusal(code: int, amount: float) -> InvalidInputError:
-    if code == layout.BAD_START:
+    if code == loop.BAD_START:
         return InvalidInputError("q0", "finite numbers", f"another at index {int(amount)}")
     got = f"a violation of {amount:.2g}" if np.isfinite(amount) else "numbers that are not finite"
     return InvalidInputError("target", "a rigid pose, a position, or unit axes", got)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nao_kin.ik.target import ORIENTATION, POINTING, POSITION
 from nao_kin.kernels.compiling import leaf_jit
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["errors", "measure", "measure_many"]
 
-_POSE, _POSITION, _POINTING, _ORIENTATION = 0, 1, 2, 3
 _SMALL = 1e-6  # twice a sine
 _LEAST = 1e-280  # [m²]: a sum of squares below has lost digits
 
@@ -63,10 +63,10 @@ def measure(
 @leaf_jit
 def errors(kind: int, goal: Floats, counts: int, R: Floats, p: Floats) -> tuple[float, float]:
     """Position error [m] and rotation error [rad] over the axes that count; see `measure`."""
-    position = math.nan if kind == _ORIENTATION else _distance(goal, counts, p)
-    if kind == _POSITION:
+    position = math.nan if kind == ORIENTATION else _distance(goal, counts, p)
+    if kind == POSITION:
         return position, math.nan
-    if kind == _POINTING:
+    if kind == POINTING:
         cosine, squared = 0.0, 0.0
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
@@ -143,10 +143,10 @@ def measure_many(kind: int, goals: Floats, counts: int, tips: Floats) -> tuple[F
     counted_axes = np.array([bool(counts >> i & 1) for i in range(6)])
     free = np.full(len(goals), np.nan)
     missing = goals[:, :3, 3] - tips[:, :3, 3]
-    position = free if kind == _ORIENTATION else np.hypot.reduce(missing[:, counted_axes[:3]], axis=1)
-    if kind == _POSITION:
+    position = free if kind == ORIENTATION else np.hypot.reduce(missing[:, counted_axes[:3]], axis=1)
+    if kind == POSITION:
         return position, free
-    if kind == _POINTING:
+    if kind == POINTING:
         axes, wanted = np.einsum("nij,nj->ni", tips[:, :3, :3], goals[:, :3, 0]), goals[:, :3, 1]
         sine = np.linalg.norm(np.cross(axes, wanted), axis=1)
         return position, np.arctan2(sine, np.einsum("ni,ni->n", axes, wanted))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 
@@ -23,11 +23,17 @@ if TYPE_CHECKING:
 # Problem, Run and IKResult are made for every solve. They are meant to be read only, but not frozen: freezing costs a
 # dataclass as much for each field as a joint's kinematics take.
 
-__all__ = ["IKResult", "Problem", "Run", "Status", "Trace", "judge"]
+__all__ = ["STATUSES", "IKResult", "Problem", "Run", "Status", "Trace", "judge", "verdict", "verdicts"]
 
 
 class Status(enum.Enum):
-    """Why a solver ended, as a sentence."""
+    """Why a solver ended, as a sentence.
+
+    Attributes:
+        number: What arrays and compiled code hold instead: the place of the member.
+    """
+
+    number: int
 
     SOLVED = "The target is reached: the returned joints were measured again and are within tolerance and limits."
     STALLED = "No start came closer any more: a local minimum, a limit, or a target out of reach."
@@ -39,14 +45,37 @@ class Status(enum.Enum):
     NO_SOLUTION = "No branch of the closed form reaches the target, whatever the joints' ranges."
 
 
-# The judge runs after every solve; looking a member up in its class takes as long as a joint's arithmetic.
-_SOLVED, _STALLED, _OUTSIDE_LIMITS, _NOT_FINITE, _JUMPED = (
-    Status.SOLVED,
-    Status.STALLED,
-    Status.OUTSIDE_LIMITS,
-    Status.NOT_FINITE,
-    Status.JUMPED,
+STATUSES: Final = tuple(Status)
+"""The statuses by their numbers, which arrays and compiled code hold."""
+
+for _number, _status in enumerate(STATUSES):
+    _status.number = _number
+
+
+def _verdict(ended: Status, reached: bool, inside: bool) -> Status:
+    """The one rule: what was measured counts; a claim that it does not confirm is a solver that stopped short."""
+    if reached and ended is not Status.NOT_FINITE:
+        return Status.SOLVED if inside else Status.OUTSIDE_LIMITS
+    return Status.STALLED if ended in (Status.SOLVED, Status.OUTSIDE_LIMITS, Status.JUMPED) else ended
+
+
+# The judge runs after every solve: looked up, the rule takes less time than a joint's arithmetic.
+_VERDICTS: Final = tuple(
+    tuple(tuple(_verdict(status, reached, inside) for inside in (False, True)) for reached in (False, True))
+    for status in Status
 )
+_NUMBERS: Final = np.array([[[s.number for s in row] for row in pair] for pair in _VERDICTS], dtype=np.int8)
+_SOLVED, _JUMPED = Status.SOLVED, Status.JUMPED
+
+
+def verdict(ended: Status, reached: bool, inside: bool) -> Status:
+    """Why a run ended, now that it is measured whether the target is reached and every joint inside its limits."""
+    return _VERDICTS[ended.number][reached][inside]
+
+
+def verdicts(ended: NDArray[Any], reached: NDArray[np.bool_], inside: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """`verdict` for rows (N,), statuses as their numbers."""
+    return np.asarray(_NUMBERS[ended, reached.astype(np.intp), inside.astype(np.intp)])
 
 
 @dataclass(eq=False, slots=True)
@@ -192,7 +221,6 @@ class IKResult:
 def judge(problem: Problem, run: Run) -> IKResult:
     """Measures the returned joints with the chain's own forward kinematics; only this may say `Status.SOLVED`."""
     chain, target, tolerances, q = problem.chain, problem.target, problem.tolerances, run.q
-    ended = run.ended
     R, p = chain.tip_at(q)
     position, rotation, inside = measure(
         KINDS[target.kind], target.goal, target.counts, R, p, q, chain.lower, chain.upper, tolerances.limits
@@ -205,12 +233,9 @@ def judge(problem: Problem, run: Run) -> IKResult:
         outside = outside_limits(chain, q, tolerances.limits)
     # Comparisons with NaN, which stands for an error that the target leaves free, are false.
     reached = not (position > tolerances.position or rotation > tolerances.rotation)
-    if reached and ended is not _NOT_FINITE:
-        ended = _OUTSIDE_LIMITS if outside else _SOLVED
-        if ended is _SOLVED and run.start is not None and np.abs(q - run.start).max() > run.jump:
-            ended = _JUMPED
-    elif ended is _SOLVED or ended is _OUTSIDE_LIMITS or ended is _JUMPED:
-        ended = _STALLED  # a claim that the measurement does not confirm: a solver that stopped short of it
+    ended = _VERDICTS[run.ended.number][reached][not outside]
+    if ended is _SOLVED and run.start is not None and np.abs(q - run.start).max() > run.jump:
+        ended = _JUMPED
     q.flags.writeable = False
     far = position if position == position else None  # NaN becomes None
     turned = rotation if rotation == rotation else None

@@ -1,11 +1,14 @@
-"""The reference loop: iterate an update rule on any object that offers `pose` and `jacobian`, limits inside."""
+"""The reference loop: iterate an update rule on any object that offers `pose` and `jacobian`, limits inside.
+
+`nao_kin.ik.compiled_loop` is its compiled twin, the same iteration on flat arrays; a test holds them together.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,9 +23,10 @@ from nao_kin.ik.problem import Problem, Run, Status, Trace
 from nao_kin.ik.reach import reach_shell
 from nao_kin.ik.rules import update
 from nao_kin.ik.starts import STORED, make_starts, nearest_first
+from nao_kin.ik.stopping import REACHED, gives_up, improved, is_polished, step_scale
 from nao_kin.ik.target import KINDS
 from nao_kin.kernels.joint_limits import packed_rules
-from nao_kin.kernels.motion import packed_joints, place
+from nao_kin.kernels.motion import Arm, At, packed_joints, place
 from nao_kin.tolerances import Tolerances
 
 if TYPE_CHECKING:
@@ -32,20 +36,7 @@ if TYPE_CHECKING:
     from nao_kin.chain import Chain
     from nao_kin.ik.target import Target
 
-__all__ = ["PATIENCE_ONCE_REACHED", "POLISHED", "REACHED", "Budget", "Update", "require_options", "run_reference"]
-
-
-REACHED: Final = 0.99
-"""Error in units of its tolerance at which the target counts as reached; a little less than 1, so that it still does
-when the judge measures again with another forward kinematics."""
-
-POLISHED: Final = 1e-3
-"""Error in units of its tolerance at which a search ends at once; until then it goes on while the error falls. One
-more step is cheap, and near a target Newton's convergence makes it a thousandfold gain."""
-
-
-PATIENCE_ONCE_REACHED: Final = 5
-"""Iterations without halving the error after which polishing ends, however patient the search was until then."""
+__all__ = ["Budget", "Update", "require_options", "run_reference"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,12 +178,11 @@ class _Search:
             aim.raw_error(self.kind, self.goal, tip, e)
             merit, within = self._note(q, e, T_base_tip)
             reached = reached or within
-            if reached and (merit <= POLISHED or merit >= previous):
+            if reached and is_polished(merit, previous):
                 return Status.SOLVED
-            previous, waited = merit, waited + 1
-            if merit < 0.5 * halved:
-                halved, waited = merit, 0
-            if waited >= (min(self.budget.patience, PATIENCE_ONCE_REACHED) if reached else self.budget.patience):
+            previous, waited = merit, 0 if improved(merit, halved) else waited + 1
+            halved = merit if waited == 0 else halved
+            if gives_up(waited, self.budget.patience, reached):
                 return Status.SOLVED if reached else Status.STALLED
             if iteration == self.budget.iterations:
                 break
@@ -223,12 +213,12 @@ class _Search:
         axes, tip, swept = np.empty((len(joints) - 1, 6)), np.empty(12), q.copy()
         place(joints, swept, axes, tip)
         memory = np.empty(sweep_memory(joints))
-        sweep(self.method.rule, joints, limits, coupled, self.kind, self.goal, self.closeness, swept, axes, tip, memory)
+        wanted = aim.SweepGoal(self.kind, self.goal, self.closeness)
+        sweep(self.method.rule, Arm(joints, limits, coupled), wanted, At(swept, axes, tip), memory)
         return swept
 
     def _bounded(self, step: Floats) -> Floats:
-        largest = float(np.abs(step).max())
-        return step * (self.budget.largest_step / largest) if largest > self.budget.largest_step else step
+        return step * step_scale(float(np.abs(step).max()), self.budget.largest_step)
 
     def _merit_after(self, q: Floats, step: Floats, proposed: int) -> float:
         """How good the joints after a step are; needed only where there is a choice."""

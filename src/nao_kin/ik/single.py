@@ -14,8 +14,8 @@ import pinocchio as pin
 from nao_kin.arrays import positive
 from nao_kin.chain import Chain, configuration, neutral
 from nao_kin.errors import InvalidInputError
-from nao_kin.ik import layout
-from nao_kin.ik.compiled import Tables, run_of, settings_of, solve_goal, tables_of, trace_rows
+from nao_kin.ik import compiled_loop as loop
+from nao_kin.ik.compiled import ChainTables, run_of, settings_of, solve_goal, tables_of, trace_rows
 from nao_kin.ik.methods import METHODS, Method, method_named
 from nao_kin.ik.problem import IKResult, Problem, Run, judge
 from nao_kin.ik.reference_loop import Budget, Update, require_options, run_reference
@@ -43,7 +43,7 @@ class Prepared:
         neutral: The default start (n,).
     """
 
-    tables: Tables
+    tables: ChainTables
     settings: Floats
     neutral: Floats
 
@@ -88,7 +88,7 @@ def solve(
     start = ready.neutral if q0 is None else start_of(chain, q0)
     allowed = math.inf if jump is None else positive(jump, "jump", "[rad or m]", endless=True)
     outcome, rows = solve_goal(ready.tables, ready.settings, wanted.goal, start), None
-    if trace and outcome[layout.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
+    if trace and outcome[loop.CODE] >= 0.0:  # the same again, now that it is known how much there is to keep
         rows = trace_rows(outcome, len(chain.joints))
         outcome = solve_goal(ready.tables, ready.settings, wanted.goal, start, rows)
     try:
@@ -181,7 +181,7 @@ def _run_in_python(
     return run
 
 
-def _update(problem: Problem, method: Method, tables: Tables, parameters: Mapping[str, float] | None) -> Update:
+def _update(problem: Problem, method: Method, tables: ChainTables, parameters: Mapping[str, float] | None) -> Update:
     """The method with its parameters, those that depend on the chain from its stored configurations."""
     chain = problem.chain
     scales = chain_scales(chain, problem.target.kind, tables.stored[:, : len(chain.joints)]) if method.scaled else None

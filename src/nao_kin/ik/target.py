@@ -15,13 +15,30 @@ from nao_kin.se3 import PoseLike, as_pose
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["AXES", "KINDS", "Target", "TargetKind", "TargetLike", "WeightsLike"]
+__all__ = [
+    "AXES",
+    "KINDS",
+    "ORIENTATION",
+    "POINTING",
+    "POSE",
+    "POSITION",
+    "Target",
+    "TargetKind",
+    "TargetLike",
+    "WeightsLike",
+]
 
 TargetKind: TypeAlias = Literal["pose", "position", "pointing", "orientation"]
 TargetLike: TypeAlias = "Target | PoseLike"
 WeightsLike: TypeAlias = "Mapping[str, float] | ArrayLike | None"
 
-KINDS: Final[dict[TargetKind, int]] = {"pose": 0, "position": 1, "pointing": 2, "orientation": 3}
+POSE, POSITION, POINTING, ORIENTATION = range(4)
+KINDS: Final[dict[TargetKind, int]] = {
+    "pose": POSE,
+    "position": POSITION,
+    "pointing": POINTING,
+    "orientation": ORIENTATION,
+}
 """The kinds by the numbers that compiled code knows them by."""
 
 AXES: Final = ("x", "y", "z", "rx", "ry", "rz")

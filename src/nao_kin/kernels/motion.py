@@ -8,7 +8,7 @@ placement only.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,9 +19,37 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.kernels.joint_path import JointPath
 
-__all__ = ["COLUMN", "MULTIPLIER", "OFFSET", "SLIDES", "jacobian", "packed_joints", "place"]
+__all__ = ["COLUMN", "MULTIPLIER", "OFFSET", "SLIDES", "Arm", "At", "jacobian", "packed_joints", "place"]
 
 SLIDES, COLUMN, MULTIPLIER, OFFSET = 12, 13, 14, 15
+
+
+class Arm(NamedTuple):
+    """A chain inside compiled loops; from Python its arrays come one by one, because a tuple costs microseconds there.
+
+    Attributes:
+        joints: The joints and the tool (m + 1, 16), see the module.
+        limits: Least and greatest joint values (2, n).
+        coupled: Coupled limits (k, 7), see `nao_kin.kernels.joint_limits`.
+    """
+
+    joints: Floats
+    limits: Floats
+    coupled: Floats
+
+
+class At(NamedTuple):
+    """Where an arm is, inside compiled loops.
+
+    Attributes:
+        q: Joints (n,) [rad or m].
+        axes: Each joint's unit axis and a point on it [m], in base axes (m, 6), as `place` writes them.
+        tip: T_base_tip (12,), as `place` writes it.
+    """
+
+    q: Floats
+    axes: Floats
+    tip: Floats
 
 
 def packed_joints(path: JointPath) -> Floats:

@@ -13,7 +13,7 @@ from nao_kin.chain import Chain, OutsideLimit
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.robot import Robot
 from nao_kin.view.robot_scene import robot_scene
-from nao_kin.view.scene import Curve, Goal, Motion, NamedPosture, Panel, Scene, SceneChain
+from nao_kin.view.scene import Curve, NamedPosture, Panel, Scene, SceneChain, SceneGoal, SceneMotion
 from nao_kin.view.workspace_scene import with_workspace
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def _trajectory_scene(robot: Robot, trajectory: Trajectory) -> Scene:
     moved = {leaders[joint].leader if joint in leaders else joint for joint in trajectory.joint_names}
     shared = [len(moved & _motors(scene, chain)) for chain in scene.chains]
     tips = sorted((k for k, count in enumerate(shared) if count), key=lambda k: -shared[k])
-    motion = Motion(name, trajectory.joint_names, trajectory.times, _rounded(trajectory.q), tips=tuple(tips))
+    motion = SceneMotion(name, trajectory.joint_names, trajectory.times, _rounded(trajectory.q), tips=tuple(tips))
     produced = f"{name}, {len(trajectory)} samples over {trajectory.duration:.4g} s"
     return replace(scene, motion=motion, produced=produced, legs=())
 
@@ -170,7 +170,7 @@ def _walk_scene(robot: Robot, walk: Walk) -> Scene:
         raise InvalidInputError("walk", "one that can be walked", walk.message.rstrip("."))
     scene = _trajectory_scene(robot, walk.trajectory)
     T_start_root = _rounded(np.linalg.inv(walk.T_world_body[0]) @ walk.T_world_body)
-    motion = replace(cast("Motion", scene.motion), body=T_start_root, tips=tuple(range(len(scene.chains))))
+    motion = replace(cast("SceneMotion", scene.motion), body=T_start_root, tips=tuple(range(len(scene.chains))))
     return replace(scene, motion=motion, notes=(*scene.notes, walk.message))
 
 
@@ -216,9 +216,9 @@ def _short(chain: Chain) -> str:
     return chain.name if robot is None else chain.name.removeprefix(f"{robot.name} ")
 
 
-def _goal(chain: int, target: Target) -> Goal:
+def _goal(chain: int, target: Target) -> SceneGoal:
     tip_axis, base_axis = target.tip_axis, target.base_axis
-    return Goal(
+    return SceneGoal(
         chain,
         target.kind,
         np.asarray(target.T_base_target.homogeneous),
@@ -278,7 +278,7 @@ def _result_scene(result: IKResult | TreeResult) -> Scene:
     )
 
 
-def _iterates(result: IKResult | TreeResult, space: Chain | Tree, tips: tuple[str, ...]) -> Motion | None:
+def _iterates(result: IKResult | TreeResult, space: Chain | Tree, tips: tuple[str, ...]) -> SceneMotion | None:
     """What a solver went through, with the returned joints at its end; None where no trace was asked for."""
     trace = result.trace
     if trace is None or not len(trace.q):
@@ -300,7 +300,7 @@ def _iterates(result: IKResult | TreeResult, space: Chain | Tree, tips: tuple[st
             column = np.append(rows.reshape(len(trace.q), -1)[:, k], math.nan if last is None else last)
             if np.isfinite(column).any():
                 curves.append(Curve(prefix + what, unit, column))
-    return Motion(
+    return SceneMotion(
         name="iterates",
         joints=space.joint_names,
         times=np.arange(len(q), dtype=np.float64),

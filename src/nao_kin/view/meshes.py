@@ -4,27 +4,43 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from itertools import permutations
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from nao_kin.errors import UrdfError
 from nao_kin.se3 import from_xyz_rpy
 from nao_kin.urdf.elements import Box, Capsule, Cylinder, MeshFile, OtherShape, Solid, Sphere
+from nao_kin.urdf.mesh_errors import UnreadableMeshError
+from nao_kin.urdf.mesh_scene import FORMATS, material_colour, read_bodies
 from nao_kin.urdf.outline import shown
 from nao_kin.urdf.resources import resolve_mesh
 from nao_kin.view.crease import Indices, split_creases
-from nao_kin.view.mesh_files import Part, UnreadableMeshError, read_parts
-from nao_kin.view.placeholder import COLOUR, label, placeholder_box, sign_corners
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from nao_kin.arrays import Floats
-    from nao_kin.urdf.elements import Colour, UrdfLink
+    from nao_kin.urdf.elements import Colour, Inertial, Triple, UrdfLink
 
-__all__ = ["DEFAULT_COLOUR", "Mesh", "Sign", "Triangulator", "triangulate"]
+__all__ = [
+    "COLOUR",
+    "DEFAULT_COLOUR",
+    "FORMATS",
+    "MAX_FACES",
+    "Mesh",
+    "Part",
+    "Sign",
+    "Triangulator",
+    "UnreadableMeshError",
+    "label",
+    "placeholder_box",
+    "read_parts",
+    "sign_corners",
+    "triangulate",
+]
 
 DEFAULT_COLOUR = (0.72, 0.75, 0.79, 1.0)
 """Light grey with a hint of blue, for a shape whose file names no colour."""
@@ -180,3 +196,148 @@ def _title(solid: Solid) -> str:
     if isinstance(solid.shape, MeshFile):
         return f"mesh {shown(solid.shape.filename.rsplit('/', 1)[-1])}"
     return type(solid.shape).__name__.lower()
+
+
+MAX_FACES = 1_000_000
+
+MAX_COLOURS = 16
+"""Most colours of faces that a body is taken apart for; with more of them it is a painting, and has its commonest."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Part:
+    """One part of a mesh file: vertices (V, 3) [m], faces (F, 3), and its colour, None where the file names none."""
+
+    vertices: Floats
+    faces: Indices
+    colour: Colour | None
+
+
+def read_parts(path: Path) -> tuple[Part, ...]:
+    """All parts of a mesh file, each at its place in the file's own frame, in metres.
+
+    COLLADA's `<unit>` is applied and its `<up_axis>` is not, as `nao_kin.urdf.mesh_scene.read_bodies` explains. A body
+    whose faces have colours of their own becomes one part a colour, up to `MAX_COLOURS`.
+
+    Raises:
+        UnreadableMeshError: Unknown format, too large, damaged, empty, or with numbers that are not finite.
+        OSError: The file cannot be opened.
+    """
+    parts = tuple(
+        part
+        for body, T in read_bodies(path)
+        for piece, colour in _pieces(body)
+        if len((part := _part(piece, T, colour)).faces)
+    )
+    if not parts:
+        raise UnreadableMeshError("it holds no triangles")
+    if sum(len(part.faces) for part in parts) > MAX_FACES:
+        raise UnreadableMeshError(f"more than {MAX_FACES} triangles")
+    return parts
+
+
+def _pieces(body: Any) -> list[tuple[Any, Colour | None]]:
+    """A body as its pieces of one colour each, None where the file names none."""
+    visual = body.visual
+    if not visual.defined:
+        return [(body, None)]
+    if visual.kind == "texture":
+        return [(body, _colour(material_colour(visual.material)))]
+    colours, of_face = np.unique(visual.face_colors, axis=0, return_inverse=True)
+    if not 1 < len(colours) <= MAX_COLOURS:
+        return [(body, _colour(visual.main_color))]
+    of_face = of_face.reshape(-1)
+    faces = [np.flatnonzero(of_face == index) for index in range(len(colours))]
+    return [(body.submesh([chosen], append=True), _colour(c)) for chosen, c in zip(faces, colours, strict=True)]
+
+
+def _part(body: Any, scaled: Floats, colour: Colour | None) -> Part:
+    body.merge_vertices(merge_tex=True, merge_norm=True)
+    vertices = np.asarray(body.vertices, dtype=np.float64) @ scaled[:3, :3].T + scaled[:3, 3]
+    if not np.isfinite(vertices).all():
+        raise UnreadableMeshError("it has coordinates that are not finite numbers")
+    faces = np.asarray(body.faces, dtype=np.int64)
+    if np.linalg.det(scaled[:3, :3]) < 0.0:
+        faces = faces[:, ::-1]  # a mirrored part would otherwise be inside out
+    return Part(*split_creases(vertices, faces), colour)
+
+
+def _colour(channels: Any | None) -> Colour | None:
+    if channels is None:
+        return None
+    red, green, blue, alpha = (float(channel) / 255.0 for channel in channels)
+    return red, green, blue, alpha or 1.0  # fully transparent is an exporter's slip: nobody draws the invisible
+
+
+COLOUR: Final = (0.95, 0.66, 0.15, 0.4)
+"""Amber, and to be seen through: no robot looks like that."""
+
+EDGE: Final = 0.1
+"""Edge of the cube that stands for a link without a usable inertia [m]."""
+
+SMALLEST_BOX, LARGEST_BOX = 1e-3, 10.0
+"""Edges [m] outside of which an inertia is taken for a slip."""
+
+SIGN: Final = 0.9
+"""Edge of the square of text on a side, next to the side's shorter edge."""
+
+
+def placeholder_box(inertial: Inertial | None, solid: Solid) -> tuple[Box, Floats]:
+    """The box of even density with a link's mass and inertia, and its pose (4, 4) in the link.
+
+    Where the link states no inertia that a body can have, a small cube at the place of the visual.
+    """
+    found = None if inertial is None else _inertia_box(inertial)
+    if found is not None:
+        return found
+    return Box((EDGE, EDGE, EDGE)), np.asarray(from_xyz_rpy(solid.origin.xyz, solid.origin.rpy).homogeneous)
+
+
+def _inertia_box(inertial: Inertial) -> tuple[Box, Floats] | None:
+    ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
+    inertia = np.array([(ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)])
+    if not (inertial.mass > 0.0 and np.isfinite(inertia).all()):
+        return None
+    moments, axes = np.linalg.eigh(inertia)
+    squares = 6.0 / inertial.mass * (moments.sum() - 2.0 * moments)  # of the edges: I_x = m (b² + c²) / 12, and so on
+    if not ((squares >= SMALLEST_BOX**2) & (squares <= LARGEST_BOX**2)).all():
+        return None
+    order = _nearest_order(axes)  # so that the text stands upright where the link does
+    axes, squares = axes[:, order], squares[order]
+    axes = axes * np.where(np.diag(axes) < 0.0, -1.0, 1.0)
+    axes[:, 2] *= np.sign(np.linalg.det(axes))
+    T_link_box = np.asarray(from_xyz_rpy(inertial.origin.xyz, inertial.origin.rpy).homogeneous).copy()
+    T_link_box[:3, :3] = T_link_box[:3, :3] @ axes
+    a, b, c = np.sqrt(squares).tolist()
+    return Box((a, b, c)), T_link_box
+
+
+def _nearest_order(axes: Floats) -> list[int]:
+    """The order of three directions, columns of `axes`, in which they are nearest to x, y and z."""
+    return list(max(permutations(range(3)), key=lambda order: float(np.abs(axes)[np.arange(3), list(order)].sum())))
+
+
+def label(solids: Sequence[Solid]) -> str:
+    """The name of the one file that is missing, or how many things are."""
+    if len(solids) > 1:
+        return f"{len(solids)} missing"
+    (solid,) = solids
+    shape = solid.shape
+    return shape.filename.rsplit("/", 1)[-1][-40:] if isinstance(shape, MeshFile) else "missing"
+
+
+def sign_corners(size: Triple) -> Floats:
+    """Squares (6, 4, 3) that text is drawn on, one on each side of a box around the origin, as close as can be.
+
+    Corners run from the lower left one counter-clockwise, as seen from outside.
+    """
+    half = np.asarray(size) / 2.0
+    squares = []
+    for axis, direction in [(axis, direction) for axis in range(3) for direction in (1.0, -1.0)]:
+        normal = np.eye(3)[axis] * direction
+        up = np.eye(3)[2] if axis < 2 else -np.eye(3)[0]  # a robot is looked at from ahead, where x points
+        right = np.cross(up, normal)
+        reach = SIGN * min(float(half @ abs(up)), float(half @ abs(right)))
+        centre = normal * (half[axis] + 0.002 * half.max())  # in front, or the two surfaces would flicker
+        squares.append([centre + reach * (i * right + j * up) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    return np.asarray(squares)

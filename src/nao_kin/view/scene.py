@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Curve",
-    "Drive",
-    "Goal",
-    "Leg",
-    "Motion",
     "NamedPosture",
     "Node",
+    "NodeDrive",
     "Panel",
     "Rod",
     "Scene",
     "SceneChain",
+    "SceneGoal",
     "SceneJoint",
+    "SceneLeg",
+    "SceneMotion",
     "bounds",
     "local_pose",
     "world_poses",
@@ -43,7 +43,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class NodeDrive:
     """What moves a node: its pose in the parent is placement · Z(v), v = multiplier · joint + offset.
 
     Attributes:
@@ -83,7 +83,7 @@ class Node:
     meshes: tuple[Mesh, ...] = ()
     collisions: tuple[Mesh, ...] = ()
     collides: bool = False
-    drive: Drive | None = None
+    drive: NodeDrive | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +140,7 @@ class NamedPosture:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Goal:
+class SceneGoal:
     """A target of a chain's tip, from which the page draws and states the residual.
 
     Attributes:
@@ -170,7 +170,7 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Motion:
+class SceneMotion:
     """Joint values to play.
 
     Attributes:
@@ -216,7 +216,7 @@ class Rod:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Leg:
+class SceneLeg:
     """A leg of three joints whose closed form the page knows, for moving the body over feet that stay.
 
     Attributes:
@@ -224,7 +224,7 @@ class Leg:
         base: Index of the body's node.
         foot: Index of the foot's node.
         joints: Its three joints.
-        numbers: The leg's numbers as `nao_kin.analytic.hexapod.hexapod_leg_kernel.pack` arranges them.
+        numbers: The leg's numbers as `nao_kin.analytic.hexapod.hexapod_leg.pack` arranges them.
     """
 
     name: str
@@ -289,11 +289,11 @@ class Scene:
     postures: tuple[NamedPosture, ...] = ()
     posture_columns: tuple[str, ...] = ()
     ghosts: bool = False
-    goals: tuple[Goal, ...] = ()
-    motion: Motion | None = None
+    goals: tuple[SceneGoal, ...] = ()
+    motion: SceneMotion | None = None
     rods: tuple[Rod, ...] = ()
     framed: tuple[int, ...] = ()
-    legs: tuple[Leg, ...] = ()
+    legs: tuple[SceneLeg, ...] = ()
 
 
 def local_pose(node: Node, values: Mapping[str, float]) -> Floats:

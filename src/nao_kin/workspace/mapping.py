@@ -4,29 +4,28 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 
 from nao_kin.arrays import positive
-from nao_kin.errors import InvalidInputError, NaoKinError, UnknownNameError
+from nao_kin.errors import InvalidInputError, MissingExtraError, NaoKinError, UnknownNameError
 from nao_kin.ik.reach import reach_shell
 from nao_kin.kernels.reaching import NOTHING, VOLUME, Cells, Samples, sort_into_cells
 from nao_kin.progress import progress
-from nao_kin.workspace.cluster import on_cluster
 from nao_kin.workspace.map_file import MOST_CELLS, MOST_SAMPLES
 from nao_kin.workspace.reach_map import MEASURES, Measure, ReachMap
 from nao_kin.workspace.sampling import Sampling, samples_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
     from nao_kin.chain import Chain
     from nao_kin.kernels.joint_path import JointPath
 
-__all__ = ["reachability"]
+__all__ = ["on_cluster", "reachability"]
 
 _CHUNK: Final = 2**20
 _BITS: Final = 32  # of a scaled measure
@@ -229,3 +228,31 @@ def _whole(value: object, what: str, most: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value <= most:
         raise InvalidInputError(what, f"a whole number from 1 to {most}", repr(value))
     return int(value)
+
+
+Task = TypeVar("Task")
+Part = TypeVar("Part")
+
+
+def on_cluster(
+    client: Any, work: Callable[[Task, int, int], Part], task: Task, chunks: Iterable[tuple[int, int]]
+) -> Iterator[Part]:
+    """Yields what `work(task, first, count)` returns for every chunk, as it comes, and forgets it on the cluster.
+
+    Dask computes a chunk again whose worker died, and gives up on one that took several workers with it; then its
+    error is raised here.
+
+    Raises:
+        InvalidInputError: `client` is no `distributed.Client`.
+        MissingExtraError: Dask is not installed.
+    """
+    try:
+        from distributed import Client, as_completed
+    except ImportError:
+        raise MissingExtraError("A cluster", "cluster") from None
+    if not isinstance(client, Client):
+        raise InvalidInputError("client", "a distributed.Client", type(client).__name__)
+    futures = [client.submit(work, task, first, count, pure=False) for first, count in chunks]
+    for future in as_completed(futures):
+        yield future.result()
+        future.release()

@@ -20,8 +20,8 @@ from nao_kin.analytic.ranges import middles_and_halves
 from nao_kin.arrays import rows as float_rows
 from nao_kin.arrays import vector
 from nao_kin.chain import outside_limits
-from nao_kin.errors import AuditError, InvalidInputError, UnknownNameError
-from nao_kin.ik.batch import AUDIT_TOLERANCE, AUDITED
+from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.ik.auditing import Claimed, audit, audited
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.target import Target
 from nao_kin.se3 import ROTATION_TOLERANCE, PoseLike, as_pose
@@ -214,7 +214,7 @@ class _Found:
 
 
 def _solved(chain: Chain, parameters: Floats, p_body: Floats, start: Floats | None, tolerances: Tolerances) -> _Found:
-    from nao_kin.analytic.hexapod.hexapod_leg_kernel import misses_by_many
+    from nao_kin.analytic.hexapod.hexapod_leg import misses_by_many
 
     found, exists = _branches(chain, parameters, p_body, 0.0)
     Q, label = found[:, :, :3], found[:, :, 3]
@@ -247,7 +247,7 @@ def _nearest(chain: Chain, parameters: Floats, p_body: Floats) -> Floats:
 
 def _branches(chain: Chain, parameters: Floats, p_body: Floats, slack: float) -> tuple[Floats, NDArray[np.bool_]]:
     """Rows of the kernel (N, 4, 5), each joint in the winding nearest to the middle of its range, and which exist."""
-    from nao_kin.analytic.hexapod.hexapod_leg_kernel import BRANCHES, solve_many
+    from nao_kin.analytic.hexapod.hexapod_leg import BRANCHES, solve_many
 
     found, counts = np.zeros((len(p_body), BRANCHES, 5)), np.zeros(len(p_body), dtype=np.int64)
     solve_many(parameters, 1, _goals(p_body), np.zeros((1, 0)), slack, found, counts)
@@ -342,9 +342,11 @@ def _poses(T_ground_body: ArrayLike | Sequence[PoseLike]) -> tuple[Floats, Float
 
 
 def _audit(chain: Chain, q: Floats, points: Floats, error: Floats, rng: np.random.Generator) -> None:
-    """Measures some rows by the chain itself; one disagreement fails the call."""
-    count = min(len(q), max(AUDITED, len(q) // 100))
-    for i in rng.choice(len(q), count, replace=False) if count else ():
-        measured = float(np.linalg.norm(chain.pose(q[i]).translation - points[i]))
-        if not abs(measured - error[i]) <= AUDIT_TOLERANCE + 1e-12 * np.abs(points[i]).max():
-            raise AuditError(int(i), f"{measured:.3g} m", f"{error[i]:.3g} m")
+    """Measures some rows by the chain itself, see `nao_kin.ik.auditing`; what counts as in place is asked elsewhere."""
+    rows = audited(len(q), rng, everything=False)
+    goals = np.tile(np.eye(4), (len(rows), 1, 1))
+    goals[:, :3, 3] = points[rows]
+    anywhere = Tolerances(position=1e300, rotation=1e300, limits=1e300)
+    free, solved = np.full(len(rows), np.nan), np.ones(len(rows), dtype=np.bool_)
+    claimed = Claimed(q[rows], goals, error[rows], free, solved)
+    audit(chain, Target.position([0.0, 0.0, 0.0]), claimed, rows, anywhere)

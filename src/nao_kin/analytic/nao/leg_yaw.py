@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from nao_kin.analytic.form import Mismatch, screws
-from nao_kin.analytic.nao.leg_kernel import runs_backwards, segments
-from nao_kin.analytic.nao.nao_leg import meeting_point, recognise
+from nao_kin.analytic.nao.nao_leg import meeting_point, recognise, runs_backwards, segments
 from nao_kin.kernels.compiling import jit
 
 if TYPE_CHECKING:

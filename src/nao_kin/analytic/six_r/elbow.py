@@ -11,7 +11,7 @@ Source: Pieper 1968 and Hawkins 2013 for the two families; with arbitrary twists
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from nao_kin.analytic.six_r.shared import (
     ANY_ELBOW,
@@ -62,6 +62,40 @@ _TURNS: Final = 256  # where any first joint will do, turns tried on each side o
 _ON_AXIS: Final = 1e-9  # sine: a direction this near to an axis says nothing about the turn round it
 
 
+class Asked(NamedTuple):
+    """A goal for an arm, inside compiled code.
+
+    Attributes:
+        arm: The arm, see `nao_kin.analytic.six_r.recognising.packed`.
+        G: The goal, of `goal_of`.
+        slack: How far beyond the border will do [m].
+        rows: Written (8, 8).
+    """
+
+    arm: Floats
+    G: Placed
+    slack: float
+    rows: Floats
+
+
+class Branch(NamedTuple):
+    """What is settled of a branch so far.
+
+    Attributes:
+        first: Cosine and sine of −q1.
+        seen: The wrist's point in the arm's plane, from the second joint [m].
+        label: Number of the branch so far.
+        free: Bits of the singularity so far.
+        clear: How far from singular the joints so far are.
+    """
+
+    first: Two
+    seen: Two
+    label: int
+    free: int
+    clear: float
+
+
 @parallel_jit
 def solve_parallel_many(
     arm: Floats, kind: int, goals: Floats, given: Floats, slack: float, rows: Floats, counts: NDArray[np.int64]
@@ -99,107 +133,74 @@ def _solve(arm: Floats, goal: Floats, slack: float, rows: Floats, parallel: bool
     if not dot(w, w) < FAR:
         return 0
     count, c, s, other_c, other_s = shoulder(arm, w, slack)
+    task = Asked(arm, G, slack, rows)
     if count < 0:
-        return _any_shoulder(arm, G, w, slack, rows, parallel)
+        return _any_shoulder(task, w, parallel)
     if count == 0:
         return 0
     free = ONE_SHOULDER if count == 1 else 0
-    written = _at(arm, G, w, c, s, 0, free, slack, rows, 0, parallel)
+    written = _at(task, w, (c, s), 0, free, 0, parallel)
     if count == 1:
         return written
-    return _at(arm, G, w, other_c, other_s, 4, free, slack, rows, written, parallel)
+    return _at(task, w, (other_c, other_s), 4, free, written, parallel)
 
 
 @jit
-def _any_shoulder(arm: Floats, G: Placed, w: Three, slack: float, rows: Floats, parallel: bool) -> int:
+def _any_shoulder(task: Asked, w: Three, parallel: bool) -> int:
     """The branches of one first joint where every value keeps the plane: of those tried, the nearest to its middle."""
     for i in range(2 * _TURNS):
         turn = math.pi * ((i + 1) // 2) / _TURNS * (1.0 if i % 2 else -1.0)
-        s, c = sine_cosine(-arm[MIDDLES] - turn)
-        count = _at(arm, G, w, c, s, 0, ANY_SHOULDER, slack, rows, 0, parallel)
+        s, c = sine_cosine(-task.arm[MIDDLES] - turn)
+        count = _at(task, w, (c, s), 0, ANY_SHOULDER, 0, parallel)
         if count:
             return count
     return 0
 
 
 @jit
-def _at(
-    arm: Floats,
-    G: Placed,
-    w: Three,
-    c: float,
-    s: float,
-    label: int,
-    free: int,
-    slack: float,
-    rows: Floats,
-    count: int,
-    parallel: bool,
-) -> int:
+def _at(task: Asked, w: Three, first: Two, label: int, free: int, count: int, parallel: bool) -> int:
     """Writes the branches of one first joint, given by cosine and sine of −q1; the number of rows then."""
+    arm, G, (c, s) = task.arm, task.G, first
     k1, h = axis(arm, 0), axis(arm, 1)
     w = turned_about(k1, c, s, w)
     # How far from its extreme the distance from the plane is; there, two first joints become one.
     clear = 1.0 if free & ANY_SHOULDER else abs(dot(h, cross(k1, w))) / arm[SCALE]
-    x, y = in_plane(arm, minus(plus(w, point(arm, 0)), point(arm, 1)))
+    seen = in_plane(arm, minus(plus(w, point(arm, 0)), point(arm, 1)))
     if not parallel:
-        return _spherical(arm, G, (c, s), (x, y), label, free, slack, rows, count, clear)
+        return _spherical(task, Branch(first, seen, label, free, clear), count)
     k5, k6 = axis(arm, 4), axis(arm, 5)
     end = turned_about(k1, c, s, turned(G[0], k6))
     facing = turned_back(G[0], turned_about(k1, c, -s, h))  # the plane's normal as the last link sees it
     number, c5, s5, other_c, other_s = roots(h, k5, k6, dot(h, end), ROUNDING)
     clear *= off_axis(k6, facing)
     if number < 0 or off_axis(k6, facing) <= _ON_AXIS:
-        return _any_wrist(arm, G, (c, s), (c5, s5), (x, y), label, free | ANY_WRIST, slack, rows, count)
+        return _any_wrist(task, Branch(first, seen, label, free | ANY_WRIST, 0.0), (c5, s5), count)
     free |= ONE_WRIST if number == 1 else 0
     for wrist in range(number):
         if wrist == 1:
             c5, s5 = other_c, other_s
         q6 = turn_between(k6, facing, turned_about(k5, c5, -s5, h))
-        count = _plane(arm, G, (c, s), (c5, s5), q6, (x, y), label + 2 * wrist, free, slack, rows, count, clear)
+        count = _plane(task, Branch(first, seen, label + 2 * wrist, free, clear), (c5, s5), q6, count)
     return count
 
 
 @jit
-def _plane(
-    arm: Floats,
-    G: Placed,
-    first: Two,
-    fifth: Two,
-    q6: float,
-    seen: Two,
-    label: int,
-    free: int,
-    slack: float,
-    rows: Floats,
-    count: int,
-    clear: float,
-) -> int:
-    """Writes the elbow's branches of three parallel axes whose other joints are known.
+def _plane(task: Asked, branch: Branch, fifth: Two, q6: float, count: int) -> int:
+    """Writes the elbow's branches of three parallel axes whose other joints are known: q5 by cosine and sine, and q6.
 
-    Args:
-        arm: The arm.
-        G: The goal.
-        first: Cosine and sine of −q1.
-        fifth: Cosine and sine of q5.
-        q6: The last joint [rad].
-        seen: W in the plane, from the second joint [m].
-        label: Branch so far.
-        free: Bits of the singularity so far.
-        slack: How far beyond the border will do [m].
-        rows: Written.
-        count: Rows written so far.
-        clear: How far from singular the other joints are.
+    Returns how many rows are written then.
     """
-    whole = _whole_turn(arm, G, first, fifth, q6)
+    arm, first, (x, y) = task.arm, branch.first, branch.seen
+    whole = _whole_turn(arm, task.G, first, fifth, q6)
     s, c = sine_cosine(whole + arm[LAST + 1])
-    number, q2, q3, other2, other3, sine, bits = _elbow(arm, seen[0] - c * arm[LAST], seen[1] - s * arm[LAST], slack)
+    number, q2, q3, other2, other3, sine, bits = _elbow(arm, x - c * arm[LAST], y - s * arm[LAST], task.slack)
     q1, q5, start = -math.atan2(first[1], first[0]), math.atan2(fifth[1], fifth[0]), count
     for bent in range(number):
         if bent == 1:
             q2, q3 = other2, other3
-        count = store(arm, rows, count, (q1, q2, q3, whole - q2 - q3, q5, q6), label + bent, free | bits)
-    return settled_rows(arm, G, rows, count, start, clear * sine) if number else count
+        q = (q1, q2, q3, whole - q2 - q3, q5, q6)
+        count = store(arm, task.rows, count, q, branch.label + bent, branch.free | bits)
+    return settled_rows(arm, task.G, task.rows, count, start, branch.clear * sine) if number else count
 
 
 @jit
@@ -212,85 +213,54 @@ def _whole_turn(arm: Floats, G: Placed, first: Two, fifth: Two, q6: float) -> fl
 
 
 @jit
-def _any_wrist(
-    arm: Floats,
-    G: Placed,
-    first: Two,
-    fifth: Two,
-    seen: Two,
-    label: int,
-    free: int,
-    slack: float,
-    rows: Floats,
-    count: int,
-) -> int:
+def _any_wrist(task: Asked, branch: Branch, fifth: Two, count: int) -> int:
     """Writes the elbow's branches of one last joint where its axis is parallel to the three others.
 
     The sum of the four joints is given. Of the sums of three that let the links reach, whose cosine about the direction
     of W lies between two bounds, it is the middle one; so the links do not stretch unless they must.
     """
-    far, last = math.sqrt(seen[0] * seen[0] + seen[1] * seen[1]), arm[LAST]
-    whole = _whole_turn(arm, G, first, fifth, arm[MIDDLES + 5])
+    arm, first, (x, y) = task.arm, branch.first, branch.seen
+    far, last = math.sqrt(x * x + y * y), arm[LAST]
+    whole = _whole_turn(arm, task.G, first, fifth, arm[MIDDLES + 5])
     product = 2.0 * far * last
     if product > ROUNDING * arm[SCALE] * arm[SCALE]:
         square, longest, shortest = far * far + last * last, arm[UPPER] + arm[LOWER], abs(arm[UPPER] - arm[LOWER])
         least = math.acos(max(-1.0, min(1.0, (square - shortest * shortest) / product)))
         most = math.acos(max(-1.0, min(1.0, (square - longest * longest) / product)))
-        whole = math.atan2(seen[1], seen[0]) - arm[LAST + 1] + 0.5 * (least + most)
+        whole = math.atan2(y, x) - arm[LAST + 1] + 0.5 * (least + most)
     s, c = sine_cosine(whole)
     across = beside(axis(arm, 5))
     # R6 = R5ᵀ · Rot(h, −whole) · R1ᵀ · R
-    v = turned_about(axis(arm, 0), first[0], first[1], turned(G[0], across))
+    v = turned_about(axis(arm, 0), first[0], first[1], turned(task.G[0], across))
     v = turned_about(axis(arm, 4), fifth[0], -fifth[1], turned_about(axis(arm, 1), c, -s, v))
-    q6 = turn_between(axis(arm, 5), across, v)
-    return _plane(arm, G, first, fifth, q6, seen, label, free, slack, rows, count, 0.0)
+    return _plane(task, branch, fifth, turn_between(axis(arm, 5), across, v), count)
 
 
 @jit
-def _spherical(
-    arm: Floats,
-    G: Placed,
-    first: Two,
-    seen: Two,
-    label: int,
-    free: int,
-    slack: float,
-    rows: Floats,
-    count: int,
-    clear: float,
-) -> int:
-    """Writes the branches of one first joint of a spherical wrist: elbow, then the wrist; arguments as `_plane` has."""
-    number, q2, q3, other2, other3, sine, bits = _elbow(arm, seen[0], seen[1], slack)
+def _spherical(task: Asked, branch: Branch, count: int) -> int:
+    """Writes the branches of one first joint of a spherical wrist: elbow, then the wrist; the number of rows then."""
+    number, q2, q3, other2, other3, sine, bits = _elbow(task.arm, branch.seen[0], branch.seen[1], task.slack)
     for bent in range(number):
         if bent == 1:
             q2, q3 = other2, other3
-        count = _wrist(arm, G, first, q2, q3, label + bent, free | bits, rows, count, clear * sine)
+        label, free, clear = branch.label + bent, branch.free | bits, branch.clear * sine
+        count = _wrist(task, Branch(branch.first, branch.seen, label, free, clear), q2, q3, count)
     return count
 
 
 @jit
-def _wrist(
-    arm: Floats,
-    G: Placed,
-    first: Two,
-    q2: float,
-    q3: float,
-    label: int,
-    free: int,
-    rows: Floats,
-    count: int,
-    clear: float,
-) -> int:
-    k4, k5, k6, start = axis(arm, 3), axis(arm, 4), axis(arm, 5), count
+def _wrist(task: Asked, branch: Branch, q2: float, q3: float, count: int) -> int:
+    arm, first, start = task.arm, branch.first, count
+    k4, k5, k6 = axis(arm, 3), axis(arm, 4), axis(arm, 5)
     s, c = sine_cosine(q2 + q3)
     across = beside(k6)
-    end = _seen_from_forearm(arm, G, first, c, s, k6)
-    turning = _seen_from_forearm(arm, G, first, c, s, across)
+    end = _seen_from_forearm(arm, task.G, first, c, s, k6)
+    turning = _seen_from_forearm(arm, task.G, first, c, s, across)
     number, c5, s5, other_c, other_s = roots(k4, k5, k6, dot(k4, end), 1e-9)
     if number == 0:
         return count
     aligned = number < 0 or off_axis(k4, end) <= _ON_AXIS
-    free |= ANY_WRIST if aligned else ONE_WRIST if number == 1 else 0
+    free = branch.free | (ANY_WRIST if aligned else ONE_WRIST if number == 1 else 0)
     for wrist in range(1 if aligned else number):
         if wrist == 1:
             c5, s5 = other_c, other_s
@@ -298,8 +268,8 @@ def _wrist(
         s4, c4 = sine_cosine(q4)
         q6 = turn_between(k6, across, turned_about(k5, c5, -s5, turned_about(k4, c4, -s4, turning)))
         q1, q5 = -math.atan2(first[1], first[0]), math.atan2(s5, c5)
-        count = store(arm, rows, count, (q1, q2, q3, q4, q5, q6), label + 2 * wrist, free)
-    return settled_rows(arm, G, rows, count, start, clear * off_axis(k4, end))
+        count = store(arm, task.rows, count, (q1, q2, q3, q4, q5, q6), branch.label + 2 * wrist, free)
+    return settled_rows(arm, task.G, task.rows, count, start, branch.clear * off_axis(k4, end))
 
 
 @jit

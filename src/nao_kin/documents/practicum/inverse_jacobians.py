@@ -9,7 +9,7 @@ import numpy as np
 from nao_kin.chain import random_configurations
 from nao_kin.documents.claim import Claim, Correction, Measured
 from nao_kin.documents.practicum import newtons_method as printed
-from nao_kin.documents.practicum.sheet import arm, near_poses, pose_error, singular_configurations
+from nao_kin.documents.practicum.practicum_sheet import arm, near_poses, pose_error, singular_configurations
 from nao_kin.documents.samples import derivative, deviation, regular_configurations, wrapped
 
 if TYPE_CHECKING:

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
     from nao_kin.documents.claim import Check, Form
 
-__all__ = ["_LONG", "_SHORT_CLAIMS", "Motion", "Short", "motions", "short_motions"]
+__all__ = ["CLAIMS", "LineMotion", "Short", "motions", "short_motions"]
 
-Short: TypeAlias = "tuple[Motion, float, tuple[float, float, float]]"
+Short: TypeAlias = "tuple[LineMotion, float, tuple[float, float, float]]"
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class LineMotion:
     """Speeding up, cruising, braking to rest; a distance too short for that has no cruise and a lower peak.
 
     Attributes:
@@ -45,7 +45,7 @@ class Motion:
     @classmethod
     def of(
         cls, accelerations: tuple[float, float, float], durations: tuple[float, float, float], t_0: float, p_0: float
-    ) -> Motion:
+    ) -> LineMotion:
         """Integrates accelerations [m/s²] over the durations [s] of the phases, from rest at p_0 [m] and t_0 [s]."""
         times, positions, speeds = [t_0], [p_0], [0.0]
         for acceleration, duration in zip(accelerations, durations, strict=True):
@@ -65,7 +65,7 @@ class Motion:
         return float(speed.integ(k=self.p[phase])(since)), float(speed(since)), acceleration
 
 
-def motions(count: int, seed: int, t_0: float | None = None, p_0: float | None = None) -> Iterator[Motion]:
+def motions(count: int, seed: int, t_0: float | None = None, p_0: float | None = None) -> Iterator[LineMotion]:
     """Motions with a cruise: rates and durations at random, unless given also the start in time [s] and place [m]."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
@@ -73,7 +73,7 @@ def motions(count: int, seed: int, t_0: float | None = None, p_0: float | None =
         peak, start, place = rng.uniform(0.1, 1.0), rng.uniform(0.5, 2.0), rng.uniform(-1.0, 1.0)
         accelerations = (peak / up, 0.0, -peak / down)
         start, place = start if t_0 is None else t_0, place if p_0 is None else p_0
-        yield Motion.of(accelerations, (up, cruise, down), start, place)
+        yield LineMotion.of(accelerations, (up, cruise, down), start, place)
 
 
 def short_motions(count: int, seed: int, equal: bool = False) -> Iterator[Short]:
@@ -92,8 +92,8 @@ def short_motions(count: int, seed: int, equal: bool = False) -> Iterator[Short]
         a_0, a_n, allowed = rng.uniform(0.2, 2.0), -rng.uniform(0.2, 2.0), rng.uniform(0.1, 1.0)
         a_n = -a_0 if equal else a_n
         peak = allowed * rng.uniform(0.05, 0.95)
-        motion = Motion.of((a_0, 0.0, a_n), (peak / a_0, 0.0, peak / -a_n), 0.0, 0.0)
-        needed = Motion.of((a_0, 0.0, a_n), (allowed / a_0, 0.0, allowed / -a_n), 0.0, 0.0).p[-1]
+        motion = LineMotion.of((a_0, 0.0, a_n), (peak / a_0, 0.0, peak / -a_n), 0.0, 0.0)
+        needed = LineMotion.of((a_0, 0.0, a_n), (allowed / a_0, 0.0, allowed / -a_n), 0.0, 0.0).p[-1]
         t_1 = allowed / a_0
         t_2 = t_1 + (motion.p[-1] - needed) / allowed
         yield motion, allowed, (t_1, t_2, t_2 + allowed / -a_n)
@@ -255,7 +255,7 @@ _ORIGIN: Final = "clock and position start with the motion, t_0 = 0 and p_0 = 0"
 
 
 def _over(
-    apart: Callable[[Form, Motion, float], float],
+    apart: Callable[[Form, LineMotion, float], float],
     phase: int | None = None,
     t_0: float | None = None,
     p_0: float | None = None,
@@ -282,7 +282,7 @@ def _line(end: int, from_start: bool) -> Check:
         from_start: Whether t counts from the start of the motion, otherwise from that of the clock.
     """
 
-    def apart(form: Form, m: Motion, t: float) -> float:
+    def apart(form: Form, m: LineMotion, t: float) -> float:
         share = (t - m.t[0]) / (m.t[3] - m.t[0])
         on_line = (1.0 - share) * m.p[0] + share * m.p[3]
         return float(form(t - m.t[0] if from_start else t, m.p[0], m.p[end], m.t[0], m.t[3])) - on_line
@@ -290,11 +290,11 @@ def _line(end: int, from_start: bool) -> Check:
     return _over(apart)
 
 
-def _place(m: Motion) -> Callable[[float], float]:
+def _place(m: LineMotion) -> Callable[[float], float]:
     return lambda t: m.at(t)[0]
 
 
-def _speed(m: Motion) -> Callable[[float], float]:
+def _speed(m: LineMotion) -> Callable[[float], float]:
     return lambda t: m.at(t)[1]
 
 

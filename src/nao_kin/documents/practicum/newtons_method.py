@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 
 from nao_kin.documents.claim import Claim, Correction, Measured
-from nao_kin.documents.practicum.sheet import arm, euler_jacobian, euler_pose, near_poses
+from nao_kin.documents.practicum.practicum_sheet import arm, euler_jacobian, euler_pose, near_poses
 from nao_kin.documents.samples import derivative, deviation, relative
 from nao_kin.se3 import from_xyz_rpy
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CLAIMS",
-    "Column",
+    "JacobianColumn",
     "added_to_angles",
     "as_rotation_vector",
     "derivative_of_pose",
@@ -358,7 +358,7 @@ def quaternion_derivative(form: Form) -> Measured:
     return Measured.worst(off, found=f"d e_O/dq is {1 - np.median(off):.2f} times what (10) says.")
 
 
-class Column:
+class JacobianColumn:
     """A column whose division by a matrix means the matrix' inverse times the column."""
 
     def __init__(self, values: Floats) -> None:
@@ -561,7 +561,7 @@ CLAIMS: Final = (
         divided(lambda e: e),
         reference="the linear system (de/dq) Δq = −e by Pinocchio's Jacobian",
         domain=_NEAR,
-        conventions={"dividing by a matrix means its inverse from the left": divided(Column)},
+        conventions={"dividing by a matrix means its inverse from the left": divided(JacobianColumn)},
     ),
     _claim(
         "10",

@@ -14,7 +14,7 @@ import numpy as np
 
 from nao_kin.arrays import positive, vector
 from nao_kin.chain import configuration
-from nao_kin.documents.practicum.sheet import jaco2
+from nao_kin.documents.practicum.practicum_sheet import jaco2
 from nao_kin.errors import InvalidInputError
 
 if TYPE_CHECKING:

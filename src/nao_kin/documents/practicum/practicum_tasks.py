@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from nao_kin.dh.dh_row import DHRow, dh_matrix
-from nao_kin.documents.practicum.sheet import jaco2
+from nao_kin.documents.practicum.practicum_sheet import jaco2
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.robot import load
 from nao_kin.trajectory.files.reading import read_trajectory, write_trajectory

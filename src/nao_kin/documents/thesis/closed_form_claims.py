@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from nao_kin.documents.thesis.closed_form import Call
     from nao_kin.documents.thesis.thesis_arms import DescribedArm, Side
 
-__all__ = ["_LEFT", "_RIGHT"]
+__all__ = [
+    "CLAIMS",
+]
 
 DESCRIBED: Final = "joint angles of the described arm (V5 model, ElbowOffsetY at the shoulder, no HandOffsetZ)"
 COUNTED: Final = "θ_3 counts against the robot's ElbowYaw, as the table of section 3.1 has it"

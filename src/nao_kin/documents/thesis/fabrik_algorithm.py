@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.documents.claim import Check, Form
 
-__all__ = ["_LINES", "_WHOLE"]
+__all__ = [
+    "CLAIMS",
+]
 
 
 def distances(n: int) -> list[tuple[int, int]]:

@@ -19,6 +19,7 @@ from nao_kin.kernels.motion import COLUMN, MULTIPLIER, place
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
+    from nao_kin.kernels.motion import Arm, At
 
 __all__ = ["CYCLES", "STILL", "carry", "hinge_memory", "hinge_pass", "leave_line", "outward_pass", "want_points"]
 
@@ -40,17 +41,7 @@ def hinge_memory(joints: Floats) -> int:
 
 
 @leaf_jit
-def hinge_pass(
-    follow: bool,
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    goal: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    memory: Floats,
-) -> bool:
+def hinge_pass(follow: bool, arm: Arm, goal: Floats, at: At, memory: Floats) -> bool:
     """One iteration towards a position: a reach pass from the target to the base, an outward pass back to the tip.
 
     Returns whether the target is within reach of the points; if not, the tip heads for the nearest place that is.
@@ -58,22 +49,18 @@ def hinge_pass(
     Args:
         follow: Follow-the-leader instead of FABRIK: the outward pass makes links parallel to those of the reach pass,
             and does not head for the points where they lie.
-        joints: The chain (m + 1, 16), see `nao_kin.kernels.motion`; turning joints, one a column.
-        limits: Least and greatest joint values (2, n).
-        coupled: Coupled limits (k, 7), see `nao_kin.kernels.joint_limits`.
+        arm: The chain; turning joints, one a column.
         goal: The target (4, 4), of which the position counts.
-        q: Joints (n,) inside the limits, changed in place.
-        axes: Axes (m, 6) at q, changed with it.
-        tip: T_base_tip (12,) at q, changed with it.
+        at: Joints inside the limits, changed in place, their axes and tip with them.
         memory: Scratch (`hinge_memory`,).
     """
-    m = joints.shape[0] - 1
+    m = arm.joints.shape[0] - 1
     first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
     wanted, rest = memory[2 * m + 2 : 5 * m + 11].reshape(m + 3, 3), memory[5 * m + 11 :]
-    count = want_points(joints, limits, coupled, goal, q, axes, tip, first, slide, wanted, rest)
-    outward_pass(follow, 0, joints, limits, coupled, count, first, slide, wanted, q, axes, tip)
-    move_inside(q, limits, coupled)
-    place(joints, q, axes, tip)
+    count = want_points(arm, goal, at, first, slide, wanted, rest)
+    outward_pass(follow, 0, arm, count, first, slide, wanted, at)
+    move_inside(at.q, arm.limits, arm.coupled)
+    place(arm.joints, at.q, at.axes, at.tip)
     off = 0.0
     for i in range(3):
         off = max(off, abs(wanted[0, i] - goal[i, 3]))
@@ -81,73 +68,55 @@ def hinge_pass(
 
 
 @leaf_jit
-def want_points(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    goal: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    first: Floats,
-    slide: Floats,
-    wanted: Floats,
-    memory: Floats,
-) -> int:
+def want_points(arm: Arm, goal: Floats, at: At, first: Floats, slide: Floats, wanted: Floats, memory: Floats) -> int:
     """How many groups there are, and where their points are wanted: by a reach pass, or straight if out of reach.
 
     The arguments are those of `hinge_pass` and `outward_pass`, q among those kept; `memory` is scratch (6 m + n,).
     """
-    m, n = joints.shape[0] - 1, q.shape[0]
-    count = find_groups(chain_length(joints), axes, tip, first, slide)
-    if count > 0 and not want_straight(goal, axes, tip, count, first, slide, wanted):
+    m, n = arm.joints.shape[0] - 1, at.q.shape[0]
+    count = find_groups(chain_length(arm.joints), at.axes, at.tip, first, slide)
+    if count > 0 and not want_straight(goal, at.axes, at.tip, count, first, slide, wanted):
         lines, turned = memory[: 6 * m].reshape(m, 6), memory[6 * m : 6 * m + n]
-        _reach_pass(joints, limits, coupled, goal, count, first, slide, q, axes, tip, wanted, lines, turned)
+        _reach_pass(arm, goal, count, first, slide, at, wanted, lines, turned)
     return count
 
 
 @leaf_jit
-def leave_line(
-    joints: Floats, limits: Floats, coupled: Floats, goal: Floats, q: Floats, axes: Floats, tip: Floats, memory: Floats
-) -> None:
+def leave_line(arm: Arm, goal: Floats, at: At, memory: Floats) -> None:
     """Bends a chain that stands in a straight line with a target within reach, which no pass would have leave the line.
 
     That may increase the error. The arguments are those of `hinge_pass`.
     """
-    m, length = joints.shape[0] - 1, chain_length(joints)
+    m, length = arm.joints.shape[0] - 1, chain_length(arm.joints)
     first, slide = memory[: m + 1], memory[m + 1 : 2 * m + 2]
-    count = find_groups(length, axes, tip, first, slide)
-    if count > 1 and is_straight(length, goal, axes, tip, count, first, slide):
+    count = find_groups(length, at.axes, at.tip, first, slide)
+    if count > 1 and is_straight(length, goal, at.axes, at.tip, count, first, slide):
         missing = 0.0
         for i in range(3):
-            missing += (goal[i, 3] - tip[9 + i]) ** 2
+            missing += (goal[i, 3] - at.tip[9 + i]) ** 2
         # A line of length l bent by an angle a is shorter by about l a².
-        _bend(min(_BEND, math.sqrt(math.sqrt(missing) / length)), joints, limits, coupled, int(first[0]), q)
-        place(joints, q, axes, tip)
+        _bend(min(_BEND, math.sqrt(math.sqrt(missing) / length)), arm, int(first[0]), at.q)
+        place(arm.joints, at.q, at.axes, at.tip)
 
 
 @leaf_jit
-def _bend(angle: float, joints: Floats, limits: Floats, coupled: Floats, end: int, q: Floats) -> None:
+def _bend(angle: float, arm: Arm, end: int, q: Floats) -> None:
     """Bends every joint before joint `end` by the same angle, so that the chain leaves a line in a way of its own."""
     for k in range(end):
-        i = int(joints[k, COLUMN])
-        middle = 0.5 * (limits[0, i] + limits[1, i])
+        i = int(arm.joints[k, COLUMN])
+        middle = 0.5 * (arm.limits[0, i] + arm.limits[1, i])
         q[i] += -angle if q[i] > middle else angle
-    move_inside(q, limits, coupled)
+    move_inside(q, arm.limits, arm.coupled)
 
 
 @leaf_jit
 def _reach_pass(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
+    arm: Arm,
     goal: Floats,
     count: int,
     first: Floats,
     slide: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
+    at: At,
     wanted: Floats,
     lines: Floats,
     turned: Floats,
@@ -158,23 +127,19 @@ def _reach_pass(
     what it could not turn is so handed on towards the base. Without hinges that makes the points of FABRIK.
 
     Args:
-        joints: The chain (m + 1, 16).
-        limits: Least and greatest joint values (2, n).
-        coupled: Coupled limits (k, 7).
+        arm: The chain.
         goal: The target (4, 4).
         count: Number of groups, > 0.
         first: See `nao_kin.ik.geometric.hinge_groups`.
         slide: See `nao_kin.ik.geometric.hinge_groups`.
-        q: Joints (n,).
-        axes: Axes (m, 6) at q.
-        tip: T_base_tip (12,) at q.
+        at: Where the chain is.
         wanted: Written (m + 3, 3): where the points of groups 0 … count are wanted [m]; two last rows are scratch.
         lines: Scratch (m, 6).
         turned: Scratch (n,).
     """
-    point = wanted[wanted.shape[0] - 1]
-    for i in range(q.shape[0]):
-        turned[i] = q[i]
+    axes, tip, point = at.axes, at.tip, wanted[wanted.shape[0] - 1]
+    for i in range(at.q.shape[0]):
+        turned[i] = at.q[i]
     wanted[0, 0], wanted[0, 1], wanted[0, 2] = goal[0, 3], goal[1, 3], goal[2, 3]
     for g in range(1, count + 1):
         x, y, z = group_point(g, first, slide, axes, tip[9], tip[10], tip[11])
@@ -183,7 +148,7 @@ def _reach_pass(
         for k in range(low, high):
             for i in range(6):
                 lines[k, i] = axes[k, i]
-        _turn_group(joints, limits, coupled, low, high, high, wanted[g - 1], turned, lines, point, point[:0])
+        _turn_group(arm, low, high, high, wanted[g - 1], turned, lines, point, point[:0])
         for i in range(3):
             wanted[g, i] = wanted[g - 1, i] - point[i]
         wanted[g, 0], wanted[g, 1], wanted[g, 2] = wanted[g, 0] + x, wanted[g, 1] + y, wanted[g, 2] + z
@@ -191,35 +156,21 @@ def _reach_pass(
 
 @leaf_jit
 def outward_pass(
-    follow: bool,
-    begin: int,
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    count: int,
-    first: Floats,
-    slide: Floats,
-    wanted: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
+    follow: bool, begin: int, arm: Arm, count: int, first: Floats, slide: Floats, wanted: Floats, at: At
 ) -> None:
     """From the base to the tip, each group turns the next point as near as it can to where it is wanted.
 
     Args:
         follow: Whether links are to be parallel to the wanted ones, wherever their points come to lie.
         begin: The first joint that may move.
-        joints: The chain (m + 1, 16).
-        limits: Least and greatest joint values (2, n).
-        coupled: Coupled limits (k, 7); met by the joints of a group one at a time.
+        arm: The chain; its coupled limits are met by the joints of a group one at a time.
         count: Number of groups.
         first: See `nao_kin.ik.geometric.hinge_groups`.
         slide: See `nao_kin.ik.geometric.hinge_groups`.
         wanted: Where the points of groups 0 … count are wanted (m + 3, 3) [m]; two last rows are scratch.
-        q: Joints (n,), changed in place.
-        axes: Axes (m, 6) at q, changed with it.
-        tip: T_base_tip (12,) at q, of which the position is changed with it.
+        at: Joints, changed in place; axes and the tip's position are changed with them.
     """
+    axes, tip = at.axes, at.tip
     point, aim = wanted[wanted.shape[0] - 1], wanted[wanted.shape[0] - 2]
     for g in range(count, 0, -1):
         aim[0], aim[1], aim[2] = wanted[g - 1, 0], wanted[g - 1, 1], wanted[g - 1, 2]
@@ -228,14 +179,12 @@ def outward_pass(
             aim[0], aim[1], aim[2] = aim[0] + x - wanted[g, 0], aim[1] + y - wanted[g, 1], aim[2] + z - wanted[g, 2]
         point[0], point[1], point[2] = group_point(g - 1, first, slide, axes, tip[9], tip[10], tip[11])
         low, high = max(int(first[g]), begin), int(first[g - 1])
-        _turn_group(joints, limits, coupled, low, high, axes.shape[0], aim, q, axes, point, tip[9:12])
+        _turn_group(arm, low, high, axes.shape[0], aim, at.q, axes, point, tip[9:12])
 
 
 @leaf_jit
 def _turn_group(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
+    arm: Arm,
     low: int,
     high: int,
     stop: int,
@@ -248,9 +197,7 @@ def _turn_group(
     """Turns joints low ≤ k < high so that a point comes as near as it can to where it is wanted.
 
     Args:
-        joints: The chain (m + 1, 16).
-        limits: Least and greatest joint values (2, n).
-        coupled: Coupled limits (k, 7).
+        arm: The chain.
         low: First joint.
         high: Behind the last joint.
         stop: The axes before this one are carried along.
@@ -263,7 +210,7 @@ def _turn_group(
     for _ in range(CYCLES):
         largest = 0.0
         for k in range(high - 1, low - 1, -1):
-            delta = _turn_joint(joints, limits, coupled, k, point, goal, q, lines)
+            delta = _turn_joint(arm, k, point, goal, q, lines)
             largest = max(largest, abs(delta))
             if delta != 0.0:
                 carry(k, stop, delta, lines, point, end)
@@ -272,15 +219,13 @@ def _turn_group(
 
 
 @leaf_jit
-def _turn_joint(
-    joints: Floats, limits: Floats, coupled: Floats, k: int, point: Floats, goal: Floats, q: Floats, lines: Floats
-) -> float:
+def _turn_joint(arm: Arm, k: int, point: Floats, goal: Floats, q: Floats, lines: Floats) -> float:
     """Moves joint k in q to where the point comes nearest to its goal; returns by how much it turns [rad]."""
-    i, factor, axis = int(joints[k, COLUMN]), joints[k, MULTIPLIER], lines[k]
+    i, factor, axis = int(arm.joints[k, COLUMN]), arm.joints[k, MULTIPLIER], lines[k]
     rx, ry, rz = point[0] - axis[3], point[1] - axis[4], point[2] - axis[5]
     sx, sy, sz = goal[0] - axis[3], goal[1] - axis[4], goal[2] - axis[5]
     A, B = point_wave(axis[0], axis[1], axis[2], rx, ry, rz, sx, sy, sz)
-    lower, upper = column_range(limits, coupled, q, i)
+    lower, upper = column_range(arm.limits, arm.coupled, q, i)
     ends = factor * (lower - q[i]), factor * (upper - q[i])
     delta = best_turn(A, B, min(ends[0], ends[1], 0.0), max(ends[0], ends[1], 0.0))
     q[i] = min(max(q[i] + delta / factor, lower), upper)

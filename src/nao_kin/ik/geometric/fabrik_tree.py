@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nao_kin.ik.aim import POSITION
+from nao_kin.ik.aim import POSITION, SweepGoal
 from nao_kin.ik.geometric.best_turn import best_turn, point_wave
 from nao_kin.ik.geometric.ccd import squared_error
 from nao_kin.ik.geometric.fabrik import CYCLES, STILL, carry, hinge_memory, leave_line, outward_pass, want_points
 from nao_kin.ik.geometric.hinge_groups import group_point
 from nao_kin.ik.geometric.sweep import DOUBLINGS, WORTH
 from nao_kin.kernels.joint_limits import column_range, move_inside
-from nao_kin.kernels.motion import COLUMN, MULTIPLIER, place
+from nao_kin.kernels.motion import COLUMN, MULTIPLIER, Arm, At, place
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,7 +131,7 @@ def _branches(
 
 def _missing(branches: Sequence[_Branch]) -> float:
     """Sum of the squared distances of the tips to their targets [m²]."""
-    return sum(squared_error(POSITION, branch.goal, 1.0, branch.tip) for branch in branches)
+    return sum(squared_error(SweepGoal(POSITION, branch.goal, 1.0), branch.tip) for branch in branches)
 
 
 def tree_pass(
@@ -147,7 +147,8 @@ def tree_pass(
     branches = _branches(paths, columns, goals, q)
     for b in branches:
         memory = np.empty(6 * len(b.axes) + len(q))
-        b.count = want_points(b.joints, limits, coupled, b.goal, q, b.axes, b.tip, b.first, b.slide, b.wanted, memory)
+        arm, at = Arm(b.joints, limits, coupled), At(q, b.axes, b.tip)
+        b.count = want_points(arm, b.goal, at, b.first, b.slide, b.wanted, memory)
     _outwards(branches, 0, limits, coupled, q)
     move_inside(q, limits, coupled)
     return q
@@ -165,7 +166,8 @@ def _off_lines(
     q = q.copy()
     for index in range(len(paths)):  # anew for each, because bending one moves the others
         b = _branches(paths, columns, goals, q)[index]
-        leave_line(b.joints, limits, coupled, b.goal, q, b.axes, b.tip, np.empty(hinge_memory(b.joints)))
+        at = At(q, b.axes, b.tip)
+        leave_line(Arm(b.joints, limits, coupled), b.goal, at, np.empty(hinge_memory(b.joints)))
     return q
 
 
@@ -173,7 +175,8 @@ def _outwards(branches: Sequence[_Branch], begin: int, limits: Floats, coupled: 
     """The outward pass of chains that share all joints before joint `begin`, from that joint on."""
     if len(branches) == 1:
         (b,) = branches
-        outward_pass(False, begin, b.joints, limits, coupled, b.count, b.first, b.slide, b.wanted, q, b.axes, b.tip)
+        arm, at = Arm(b.joints, limits, coupled), At(q, b.axes, b.tip)
+        outward_pass(False, begin, arm, b.count, b.first, b.slide, b.wanted, at)
         return
     end = _shared(branches)
     while begin < end:

@@ -21,7 +21,9 @@ from nao_kin.kernels.motion import place
 
 if TYPE_CHECKING:
     from nao_kin.arrays import Floats
+    from nao_kin.ik.aim import SweepGoal
     from nao_kin.kernels.joint_path import JointPath
+    from nao_kin.kernels.motion import Arm, At
 
 __all__ = ["CCD", "DOUBLINGS", "FABRIK", "FOLLOW_THE_LEADER", "WORTH", "refusal", "sweep", "sweep_memory"]
 
@@ -56,88 +58,45 @@ def refusal(path: JointPath) -> str:
 
 
 @leaf_jit
-def sweep(
-    method: int,
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    kind: int,
-    goal: Floats,
-    closeness: float,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    memory: Floats,
-) -> None:
-    """Two passes and a step on: moves q to a new configuration inside its limits, coupled ones included.
+def sweep(method: int, arm: Arm, aim: SweepGoal, at: At, memory: Floats) -> None:
+    """Two passes and a step on: moves to a new configuration inside its limits, coupled ones included.
 
     Args:
         method: `CCD`, `FOLLOW_THE_LEADER` or `FABRIK`; the latter two on chains that `refusal` does not name.
-        joints: The chain (m + 1, 16), see `nao_kin.kernels.motion`.
-        limits: Least and greatest joint values (2, n).
-        coupled: Coupled limits (k, 7), see `nao_kin.kernels.joint_limits`.
-        kind: What is wanted, see `nao_kin.ik.aim`; a position for the latter two.
-        goal: The target (4, 4).
-        closeness: Weight of the squared distance [1/m²] against the rotation, see `nao_kin.ik.starts`.
-        q: Joints (n,) inside the limits, changed in place.
-        axes: Axes (m, 6) at q; left at the new one.
-        tip: T_base_tip (12,) at q; left at the new one.
+        arm: The chain.
+        aim: What is wanted; a position for the latter two.
+        at: Joints inside the limits, changed in place, their axes and tip with them.
         memory: Scratch (`sweep_memory`,).
     """
-    n = q.shape[0]
+    n = at.q.shape[0]
     start, rest = memory[:n], memory[n:]
     if method != CCD:
-        leave_line(joints, limits, coupled, goal, q, axes, tip, rest)
-    _improve(method, joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
-    _improve(method, joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
-    _go_on(joints, limits, coupled, kind, goal, closeness, start, q, axes, tip, rest)
+        leave_line(arm, aim.goal, at, rest)
+    _improve(method, arm, aim, start, at, rest)
+    _improve(method, arm, aim, start, at, rest)
+    _go_on(arm, aim, start, at, rest)
 
 
 @leaf_jit
-def _improve(
-    method: int,
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    kind: int,
-    goal: Floats,
-    closeness: float,
-    start: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    memory: Floats,
-) -> None:
+def _improve(method: int, arm: Arm, aim: SweepGoal, start: Floats, at: At, memory: Floats) -> None:
     """One pass of the method, or of CCD where that does not bring the tip closer; `start` (n,) receives q before it."""
-    n = q.shape[0]
-    before = squared_error(kind, goal, closeness, tip)
-    for i in range(n):
+    q = at.q
+    before = squared_error(aim, at.tip)
+    for i in range(q.shape[0]):
         start[i] = q[i]
     if method != CCD:
-        in_reach = hinge_pass(method == FOLLOW_THE_LEADER, joints, limits, coupled, goal, q, axes, tip, memory)
+        in_reach = hinge_pass(method == FOLLOW_THE_LEADER, arm, aim.goal, at, memory)
         worth = WORTH if in_reach else 1.0
-        if squared_error(kind, goal, closeness, tip) < worth * before:
+        if squared_error(aim, at.tip) < worth * before:
             return
-        for i in range(n):
+        for i in range(q.shape[0]):
             q[i] = start[i]
-        place(joints, q, axes, tip)
-    ccd_pass(joints, limits, coupled, kind, goal, closeness, q, axes, tip, memory)
+        place(arm.joints, q, at.axes, at.tip)
+    ccd_pass(arm, aim, at, memory)
 
 
 @leaf_jit
-def _go_on(
-    joints: Floats,
-    limits: Floats,
-    coupled: Floats,
-    kind: int,
-    goal: Floats,
-    closeness: float,
-    start: Floats,
-    q: Floats,
-    axes: Floats,
-    tip: Floats,
-    memory: Floats,
-) -> None:
+def _go_on(arm: Arm, aim: SweepGoal, start: Floats, at: At, memory: Floats) -> None:
     """Goes on in the direction from `start` to q, each time twice as far, while that brings the error down.
 
     After a pass, what is left of the error lies mostly along the direction in which the method is slowest; so it is the
@@ -145,19 +104,19 @@ def _go_on(
 
     A pattern move after R. Hooke and T. A. Jeeves, "Direct search" solution of numerical problems, 1961.
     """
-    n, trial, factor = q.shape[0], memory[: q.shape[0]], 1.0
-    best = squared_error(kind, goal, closeness, tip)
+    q, n, factor = at.q, at.q.shape[0], 1.0
+    trial, best = memory[:n], squared_error(aim, at.tip)
     for i in range(n):
         memory[n + i] = q[i] - start[i]
     for _ in range(DOUBLINGS):
         for i in range(n):
             trial[i] = q[i] + factor * memory[n + i]
-        move_inside(trial, limits, coupled)
-        place(joints, trial, axes, tip)
-        error = squared_error(kind, goal, closeness, tip)
+        move_inside(trial, arm.limits, arm.coupled)
+        place(arm.joints, trial, at.axes, at.tip)
+        error = squared_error(aim, at.tip)
         if not error < best:
             break
         best, factor = error, 2.0 * factor
         for i in range(n):
             q[i] = trial[i]
-    place(joints, q, axes, tip)
+    place(arm.joints, q, at.axes, at.tip)

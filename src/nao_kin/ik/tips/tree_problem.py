@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_kin.chain import OutsideLimit, joint_table, outside_limits
 from nao_kin.ik.measure import errors
-from nao_kin.ik.problem import Status
+from nao_kin.ik.problem import Status, verdict
 from nao_kin.ik.target import KINDS
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
@@ -194,11 +194,4 @@ def judge_tree(problem: TreeProblem, run: TreeRun) -> TreeResult:
             position[tip], rotation[tip] = (None if math.isnan(error) else error for error in measured)
     run.q.flags.writeable = False
     found = TreeResult(problem, run.q, run.ended, position, rotation, tuple(dict.fromkeys(outside)), run)
-    return replace(found, status=_verdict(found, run.ended))
-
-
-def _verdict(measured: TreeResult, ended: Status) -> Status:
-    if not measured.missed and ended is not Status.NOT_FINITE:
-        return Status.OUTSIDE_LIMITS if measured.outside else Status.SOLVED
-    # A claim that the measurement does not confirm: a solver that stopped short of it.
-    return Status.STALLED if ended in (Status.SOLVED, Status.OUTSIDE_LIMITS) else ended
+    return replace(found, status=verdict(run.ended, not found.missed, not found.outside))

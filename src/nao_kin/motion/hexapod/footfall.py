@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
 
-__all__ = ["GAITS", "LEGS", "Course", "Gait", "Steps", "steps"]
+__all__ = ["GAITS", "LEGS", "BodyCourse", "Gait", "Steps", "steps"]
 
 _INSTANT: Final = 1e-9  # a share of a swing this small is none
 
@@ -73,7 +73,7 @@ GAITS: Final = {
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class BodyCourse:
     """How the body moves over the ground, seen in the plane.
 
     Attributes:
@@ -152,7 +152,7 @@ class Steps:
         return points, down
 
 
-def steps(course: Course, gait: Gait, cycle: float, leg: str, home: Floats) -> Steps:
+def steps(course: BodyCourse, gait: Gait, cycle: float, leg: str, home: Floats) -> Steps:
     """The steps of a leg: in the gait's rhythm while the body moves, and then until the foot is in its usual place.
 
     Args:

@@ -7,7 +7,7 @@ from typing import Final
 
 from nao_kin.arrays import positive, vector
 from nao_kin.errors import InvalidInputError, UnknownNameError
-from nao_kin.motion.hexapod.footfall import GAITS, Course, Gait
+from nao_kin.motion.hexapod.footfall import GAITS, BodyCourse, Gait
 
 __all__ = ["WalkCommand"]
 
@@ -83,9 +83,9 @@ class WalkCommand:
         return _SWING / (1.0 - self.rhythm.duty) if self.cycle is None else self.cycle
 
     @property
-    def course(self) -> Course:
+    def course(self) -> BodyCourse:
         """How the body moves over the ground."""
-        return Course(self.velocity, self.turn, self.duration, min(self.period, 0.5 * self.duration))
+        return BodyCourse(self.velocity, self.turn, self.duration, min(self.period, 0.5 * self.duration))
 
     def at_speed(self, share: float) -> WalkCommand:
         """The same at a multiple of the speed, straight on and turning."""
