@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import typer
 
-from nao_kin.cli.macro_arguments import for_macros
+from nao_kin.cli.shared_options import shared_options
 from nao_kin.errors import NaoKinError, UrdfWarning
-from nao_kin.robot.sources import reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -55,7 +54,8 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     app = typer.Typer(
         name="nao-kin",
         help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages. "
-        "Where a robot is a file of xacro, NAME:=VALUE gives its arguments and --package NAME=DIR its packages.",
+        "Where a robot is a file of xacro, NAME:=VALUE gives its arguments and --package NAME=DIR its packages; "
+        '--tool "x y z roll pitch yaw" [m, rad] puts a tool on the tip of fk, ik, compare, trajectory and workspace.',
         no_args_is_help=True,
         invoke_without_command=True,
         add_completion=False,
@@ -88,11 +88,11 @@ def main() -> NoReturn:
     warnings.formatwarning = _plain  # type: ignore[assignment]
     # typer reads every parameter of every command before it runs one, which takes longer than most of them do.
     asked = [word for word in sys.argv[1:2] if word in COMMANDS]
-    words, arguments, packages = for_macros(sys.argv[1:], own_packages=asked == ["check"])
     try:
-        with reading(arguments, packages):
-            status = application(asked or COMMANDS)(words, standalone_mode=True)
-    except NaoKinError as error:
+        given = shared_options(sys.argv[1:])
+        with given.in_force():
+            status = application(asked or COMMANDS)(given.words, standalone_mode=True)
+    except (NaoKinError, typer.BadParameter) as error:  # typer itself shows those of its own parameters
         typer.echo(f"nao-kin: {error}", err=True)
         sys.exit(2)
     except OSError as error:

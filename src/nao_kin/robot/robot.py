@@ -24,6 +24,7 @@ from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_sha
 from nao_kin.robot.motors import Motors
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
 from nao_kin.robot.sources import read_source, tell
+from nao_kin.robot.tool import as_tool
 from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
 from nao_kin.table import Column, Table
@@ -32,6 +33,7 @@ from nao_kin.urdf.writer import UNLIMITED
 if TYPE_CHECKING:
     import os
 
+    from nao_kin.robot.tool import ToolLike
     from nao_kin.urdf import UrdfDocument
     from nao_kin.urdf.elements import UrdfJoint
     from nao_kin.urdf.packages import PackageRoots
@@ -266,10 +268,16 @@ class Robot:
         pin.framesForwardKinematics(self.model, data, q)
         return {name: pin.SE3(data.oMf[i]) for name, i in self._frame_ids.items()}
 
-    def chain(self, base: str, tip: str | None = None) -> UrdfChain:
+    def chain(self, base: str, tip: str | None = None, *, tool: ToolLike | None = None) -> UrdfChain:
         """The chain from a base frame to a tip frame, or a named one of `chain_names`: ``robot.chain("left_arm")``.
 
+        Args:
+            base: A frame, or the name of a chain where no tip is given.
+            tip: A frame.
+            tool: What sits on the tip, as `UrdfChain.with_tool` takes it: ``[0, 0, 0.1034, 0, 0, 0]``.
+
         Raises:
+            InvalidInputError: The tool is none.
             UnknownNameError: Unknown frame or chain; carries near matches.
             NoPathError: No moving joint lies between the two frames.
         """
@@ -277,11 +285,12 @@ class Robot:
             frames = self.chain_frames.get(base) or self._other_chains.get(base)
             if frames is None:
                 raise UnknownNameError("chain", base, self.chain_names, self.name)
-            self._require_frames(*frames)
-            return UrdfChain(self, *frames, label=base)
-        self._require_frames(base, tip)
-        named = (name for name, frames in self.chain_frames.items() if frames == (base, tip))
-        return UrdfChain(self, base, tip, label=next(named, ""))
+            label = base
+        else:
+            frames = base, tip
+            label = next((name for name, known in self.chain_frames.items() if known == frames), "")
+        self._require_frames(*frames)
+        return UrdfChain(self, *frames, label, tool=None if tool is None else as_tool(tool))
 
     def tree(self, base: str, tips: Sequence[str]) -> Tree:
         """The chains from one base frame to several tip frames as one: joints that they share are the same columns.
