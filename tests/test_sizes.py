@@ -46,6 +46,9 @@ LONG_FILES: dict[str, str] = {
     "src/nao_kin/trajectory/following.py": "a path followed, between its samples and in time",
 }
 SHORT_FILES: dict[str, str] = {
+    "src/nao_kin/checks/digits.py": "a question that rules on twins and on limits ask",
+    "src/nao_kin/cli/diff_command.py": "a command",
+    "src/nao_kin/urdf/quaternion.py": "one conversion, without Pinocchio",
     "src/nao_kin/__main__.py": "what Python calls it",
     "src/nao_kin/analytic/ranges.py": "a rule that four closed forms share",
     "src/nao_kin/checks/catalogue/entry.py": "the row that every list of codes imports",

@@ -56,13 +56,12 @@ def check(
     swap_limits: Annotated[bool, typer.Option("--swap-limits", help="With --fix: exchange such limits.")] = False,
 ) -> None:
     """Check URDF files. Exit status 0: clean; 1: findings; 2: wrong usage or unreadable input."""
-    from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
     from nao_kin.checks.catalogue import require_codes
-    from nao_kin.checks.finding import Report, Severity
-    from nao_kin.errors import UrdfError
 
     if update_baseline and baseline is None:
         raise typer.BadParameter("--update-baseline needs --baseline FILE.")
+    if (write or swap_limits) and not fix:
+        raise typer.BadParameter("--write and --swap-limits go with --fix.")
     selected, ignored = _codes(select), _codes(ignore)
     require_codes((*selected, *ignored))
     options: _Options = {
@@ -72,31 +71,49 @@ def check(
         "ignore": ignored,
     }
     paths = _paths(files)
-    if (write or swap_limits) and not fix:
-        raise typer.BadParameter("--write and --swap-limits go with --fix.")
     if fix:
         from nao_kin.cli.fixing import fix_files
 
         raise typer.Exit(fix_files(paths, write=write, swap_limits=swap_limits))
     if (dh or against) and (len(paths) != 1 or paths == ["-"]):
         raise typer.BadParameter("--dh and --against are for one file.")
-    known = read_baseline(baseline) if baseline is not None and not update_baseline else None
+    found, unreadable = _all_checked(paths, options, urdf, (dh, against))
+    raise typer.Exit(_reported(found, unreadable, format, strict, (baseline, update_baseline)))
+
+
+def _all_checked(
+    paths: list[str], options: _Options, urdf: str | None, held: tuple[str | None, str | None]
+) -> tuple[Report, bool]:
+    """The findings of all files, and whether one could not be read at all."""
+    from nao_kin.checks.finding import Report
+    from nao_kin.errors import UrdfError
+
     reports, unreadable = [], False
     for path in paths:
         try:
-            reports.append(_checked(path, options, urdf, (dh, against)))
+            reports.append(_checked(path, options, urdf, held))
         except UrdfError as error:
             typer.echo(f"nao-kin: {error}", err=True)
             unreadable = True
-    found = Report.joined(reports)
-    if baseline is not None and update_baseline:
-        write_baseline(found, baseline)
-        typer.echo(f"nao-kin: {baseline} now knows {len(found)} findings.", err=True)
-        raise typer.Exit(2 if unreadable else 0)
-    found = found if known is None else without_known(found, known)
+    return Report.joined(reports), unreadable
+
+
+def _reported(
+    found: Report, unreadable: bool, format: CheckFormat, strict: bool, baseline: tuple[Path | None, bool]
+) -> int:
+    """Prints the findings, or what is new of them, or records them; the exit status."""
+    from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
+    from nao_kin.checks.finding import Severity
+
+    path, update = baseline
+    if path is not None and update:
+        write_baseline(found, path)
+        typer.echo(f"nao-kin: {path} now knows {len(found)} findings.", err=True)
+        return 2 if unreadable else 0
+    found = found if path is None else without_known(found, read_baseline(path))
     threshold = Severity.warning if strict else Severity.error
     _print(found, format, threshold)
-    raise typer.Exit(2 if unreadable else 1 if found.at_or_above(threshold) else 0)
+    return 2 if unreadable else 1 if found.at_or_above(threshold) else 0
 
 
 class _Options(TypedDict):

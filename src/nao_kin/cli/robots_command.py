@@ -23,30 +23,43 @@ def robots(
 
         report(f"{fetch} is at {fetch_description(fetch).path}.")
         return
+    if format is OutputFormat.json:
+        _as_data()
+    else:
+        _as_tables()
+
+
+def _as_data() -> None:
+    from nao_kin.documents.chains import DOCUMENT_CHAINS
+    from nao_kin.robot.known import ALIASES, KNOWN_ROBOTS, example_robot_data_share
+
+    installed = example_robot_data_share() is not None
+    shorter = {name: alias for alias, name in ALIASES.items()}
+    robots_data = [
+        {
+            "name": robot.name,
+            "alias": shorter.get(robot.name),
+            "title": robot.title,
+            "source": robot.source,
+            "available": robot.source == "bundled" or installed,
+            "chains": {chain: list(frames) for chain, frames in robot.chains.items()},
+        }
+        for robot in KNOWN_ROBOTS.values()
+    ]
+    documents_data = [
+        {"name": name, "source": d.source, "robot": d.robot, "base": d.base, "tip": d.tip}
+        for name, d in DOCUMENT_CHAINS.items()
+    ]
+    report_json({"robots": robots_data, "document_chains": documents_data})
+
+
+def _as_tables() -> None:
     from nao_kin.documents.chains import DOCUMENT_CHAINS
     from nao_kin.robot.known import ALIASES, KNOWN_ROBOTS, example_robot_data_share
     from nao_kin.table import Column, Table
 
     installed = example_robot_data_share() is not None
     shorter = {name: alias for alias, name in ALIASES.items()}
-    if format is OutputFormat.json:
-        robots_data = [
-            {
-                "name": robot.name,
-                "alias": shorter.get(robot.name),
-                "title": robot.title,
-                "source": robot.source,
-                "available": robot.source == "bundled" or installed,
-                "chains": {chain: list(frames) for chain, frames in robot.chains.items()},
-            }
-            for robot in KNOWN_ROBOTS.values()
-        ]
-        documents_data = [
-            {"name": name, "source": d.source, "robot": d.robot, "base": d.base, "tip": d.tip}
-            for name, d in DOCUMENT_CHAINS.items()
-        ]
-        report_json({"robots": robots_data, "document_chains": documents_data})
-        return
     rows = []
     for robot in KNOWN_ROBOTS.values():
         name = f"{robot.name} = {shorter[robot.name]}" if robot.name in shorter else robot.name
