@@ -50,3 +50,6 @@ def test_files_that_the_guides_name_exist() -> None:
         text = page.read_text(encoding="utf-8")
         for name in re.findall(r"`((?:src/nao_kin|tests|tools)/[\w/.]+?\.py)`", text):
             assert (ROOT / name).is_file(), f"{page.name} names {name}"
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    for name in re.findall(r"`([\w/]+(?:\.py|/))`", text):
+        assert (ROOT / "src" / "nao_kin" / name).exists(), f"architecture.md names {name}"

@@ -30,7 +30,16 @@ def test_moved_lines_are_known_and_a_second_one_is_new(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"layout": 1}', '{"layout": 2, "known": []}', '{"layout": 1, "known": [1]}']
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        '{"layout": 1}',
+        '{"layout": 2, "known": []}',
+        '{"layout": 1, "known": [1]}',
+        *(f'{{"layout": 1, "known": [{{"fingerprint": "a", "count": {n}}}]}}' for n in ("Infinity", "NaN", "1e999")),
+    ],
 )
 def test_another_file_is_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "baseline.json"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import shutil
 import subprocess
@@ -214,3 +215,39 @@ def test_the_digest_sees_names_and_contents(tmp_path: Path) -> None:
     assert compiling.source_digest([a]) != first
     a.write_text("y"), b.write_text("x")
     assert compiling.source_digest([a, b]) != first
+
+
+def compiled_files() -> set[Path]:
+    """Every file of the package that holds a compiled function, by its decorators."""
+    found = set()
+    for path in Path(nao_kin.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef) and any(
+                ast.unparse(decorator).rpartition(".")[2] in {"jit", "leaf_jit", "parallel_jit"}
+                for decorator in node.decorator_list
+            ):
+                found.add(path)
+    return found
+
+
+def test_the_digest_covers_every_file_with_a_compiled_function() -> None:
+    files = compiled_files()
+    assert len(files) > 40
+    assert any(len(path.relative_to(Path(nao_kin.__file__).parent).parts) > 2 for path in files)  # in subfolders too
+    assert files <= set(compiling._sources())
+
+
+def test_a_changed_or_moved_file_in_a_subfolder_changes_the_digest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compiling, "_PACKAGE", tmp_path)
+    deep, beside = tmp_path / "ik" / "deep" / "helper.py", tmp_path / "ik" / "beside" / "helper.py"
+    deep.parent.mkdir(parents=True)
+    deep.write_text("FACTOR = 2.0\n")
+    digests = [compiling.source_digest(compiling._sources())]
+    deep.write_text("FACTOR = 3.0\n")
+    digests.append(compiling.source_digest(compiling._sources()))
+    beside.parent.mkdir()
+    deep.rename(beside)
+    digests.append(compiling.source_digest(compiling._sources()))
+    assert len(set(digests)) == 3

@@ -56,7 +56,7 @@ def read_baseline(path: str | os.PathLike[str]) -> Counter[str]:
         if data["layout"] != _LAYOUT:
             raise InvalidInputError(f"baseline {path}", f"layout {_LAYOUT}", f"layout {data['layout']!r}")
         return Counter({str(row["fingerprint"]): int(row["count"]) for row in data["known"]})
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
         if isinstance(error, InvalidInputError):
             raise
         raise InvalidInputError(f"baseline {path}", "a file written with --update-baseline", "another one") from None

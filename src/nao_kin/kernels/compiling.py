@@ -44,7 +44,9 @@ _OPTIONS: Final[dict[str, Any]] = {"fastmath": {"contract"}, "error_model": "num
 
 _numba_settings: Any = numba.config  # attributes made at run time, which the type checker cannot see
 
-# Packages whose modules hold compiled functions, or helpers and constants that those use.
+_PACKAGE: Final = Path(__file__).resolve().parent.parent
+
+# Packages whose modules, in subfolders too, hold compiled functions, or helpers and constants that those use.
 _SOURCE_FOLDERS: Final = ("kernels", "ik", "analytic")
 _FOLDER_NAME: Final = re.compile(r"[0-9a-f]{20}")
 _KEEP_DAYS: Final = 60.0
@@ -124,14 +126,18 @@ def source_digest(files: Iterable[Path]) -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for file in sorted(files):
         content = file.read_bytes()
-        digest.update(f"\n{file.parent.name}/{file.name} {len(content)}\n".encode())
+        digest.update(f"\n{_place_of(file)} {len(content)}\n".encode())
         digest.update(content)
     return digest.hexdigest()[:20]
 
 
+def _place_of(file: Path) -> str:
+    """Where a file is below the package: a helper that moved to another folder is another source."""
+    return file.relative_to(_PACKAGE).as_posix() if file.is_relative_to(_PACKAGE) else file.name
+
+
 def _sources() -> list[Path]:
-    package = Path(__file__).resolve().parent.parent
-    return [file for folder in _SOURCE_FOLDERS for file in (package / folder).rglob("*.py")]
+    return [file for folder in _SOURCE_FOLDERS for file in (_PACKAGE / folder).rglob("*.py")]
 
 
 def _cache_parent() -> Path:

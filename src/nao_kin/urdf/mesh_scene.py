@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from lxml import etree
 
+from nao_kin.urdf.mesh_bounds import bound_bodies, bound_collada, bound_text, fenced
 from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
 from nao_kin.urdf.size_limits import LIMITS
 
@@ -51,9 +52,11 @@ def read_bodies(path: Path) -> list[tuple[Any, Floats]]:
         content = file.read(LIMITS.mesh_bytes + 1)
     if len(content) > LIMITS.mesh_bytes:
         raise LargeMeshError(f"larger than {LIMITS.mesh_bytes} bytes")
-    if kind == "dae":
-        content = harmless_collada(content)
-    return _placed_bodies(_load(content, kind, _MaterialLibraries(path.parent) if kind == "obj" else None))
+    bound_text(content, kind)
+    with fenced():
+        if kind == "dae":
+            content = harmless_collada(content)
+        return _placed_bodies(_load(content, kind, _MaterialLibraries(path.parent) if kind == "obj" else None))
 
 
 def material_colour(material: Any) -> Any | None:
@@ -88,6 +91,8 @@ def _load(content: bytes, kind: str, resolver: _MaterialLibraries | None) -> Any
     was_disabled, log.disabled = log.disabled, True  # it complains about each texture we do not let it read
     try:
         return trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=resolver, allow_remote=False)
+    except (MemoryError, TimeoutError):
+        raise  # the fence's own
     except Exception as error:  # the readers of the formats raise whatever they stumble on
         raise UnreadableMeshError(f"not a readable {kind.upper()} file ({type(error).__name__})") from error
     finally:
@@ -97,6 +102,7 @@ def _load(content: bytes, kind: str, resolver: _MaterialLibraries | None) -> Any
 def _placed_bodies(scene: Any) -> list[tuple[Any, Floats]]:
     import trimesh
 
+    bound_bodies(scene)
     bodies: list[tuple[Any, Floats]] = []
     for node in sorted(scene.graph.nodes_geometry):
         transform, name = scene.graph[node]
@@ -142,6 +148,7 @@ def harmless_collada(content: bytes) -> bytes:
         root = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:
         raise UnreadableMeshError(f"not well-formed XML ({error})") from error
+    bound_collada(root)
     _take_pictures_out(root)
     return etree.tostring(root)
 

@@ -20,6 +20,12 @@ class ReadLimits:
     mesh_markup: int = 2_000_000
     """Most ``<`` in a mesh of XML, which bounds the memory of its tree; a polygon may have an element of its own."""
 
+    mesh_bodies: int = 4096
+    """Most bodies that a mesh unfolds to, instances counted each: a robot's part has a handful."""
+
+    mesh_faces: int = 4_000_000
+    """Most triangles of a mesh, all bodies together; a fine scan of a part has half a million."""
+
     material_bytes: int = 1024 * 1024
     """How much of a material library is read [bytes]: it holds a few numbers a material."""
 
