@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, cast
 from lxml import etree
 
 from nao_kin.errors import UrdfError
-from nao_kin.urdf.document import UrdfDocument, read_bytes
+from nao_kin.urdf.document import UrdfDocument, parse_urdf, read_bytes
 from nao_kin.urdf.elements import Box, Capsule, Cylinder, Inertial, Limit, Origin, Solid, Sphere, UrdfJoint, UrdfLink
 from nao_kin.urdf.fields import NumberError, decimal_numbers
 from nao_kin.urdf.outline import line_of, shown, tag_of
@@ -81,7 +81,12 @@ def read_mjcf(path: str | os.PathLike[str]) -> UrdfDocument:
     links, joints = tuple(robot.links.values()), tuple(robot.joints)
     title = root.get("model") or Path(name).stem
     digest = hashlib.sha256(data).hexdigest()
-    return UrdfDocument(name, title, digest, links, joints, robot.root, directory, tuple(told))
+    document = UrdfDocument(name, title, digest, links, joints, robot.root, directory, tuple(told))
+    try:
+        parse_urdf(document.to_xml().encode())  # names once, finite numbers, one tree, as for any robot
+    except UrdfError as refusal:
+        raise UrdfError(name, None, refusal.reason, refusal.hint, code=refusal.code) from None
+    return document
 
 
 def _unread(root: etree._Element, name: str) -> list[str]:
