@@ -126,7 +126,7 @@ def test_what_is_lost_is_said_with_its_line(tmp_path: Path) -> None:
         ('type="hinge" axis="0 1 0"', 'type="ball"', "of the kind spherical"),
         ("<worldbody>", '<include file="/etc/passwd"/><worldbody>', "includes another file"),
         ("<mujoco", "<robot", "begins with <mujoco>"),
-        ('name="twist"', 'name="rail"', "'rail' exists already"),
+        ('name="twist"', 'name="rail"', "exists already"),
         ("<worldbody>", "<worldbody><body", "not well-formed"),
         ('quat="0.9 0.1 0.2 0.3"', 'quat="x"', "instead of 4"),
     ],
