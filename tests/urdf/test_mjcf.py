@@ -105,6 +105,18 @@ def test_shapes_are_drawn_and_inverse_kinematics_works(tmp_path: Path) -> None:
     assert nk.solve(chain, target, q0=[0.0, 0.0, 0.0, 0.0]).solved
 
 
+def test_joints_and_bodies_without_names_get_some(tmp_path: Path) -> None:
+    text = "".join(
+        (
+            '<mujoco><worldbody><body name="a"><joint axis="0 0 1"/><joint axis="0 1 0"/><geom size="0.1"/>',
+            '<body><joint axis="1 0 0"/><geom size="0.1"/></body></body></worldbody></mujoco>',
+        )
+    )
+    robot = loaded(text, tmp_path)
+    assert len(set(robot.joint_names)) == 3
+    assert len(robot.chain(robot.chain_names[0]).joints) == 3
+
+
 def test_what_is_lost_is_said_with_its_line(tmp_path: Path) -> None:
     path = tmp_path / "arm.xml"
     path.write_text(ARM.replace('<body name="base" ', '<body name="base" ').replace(

@@ -186,7 +186,8 @@ class _Reading:
         sits = next((frame["name"] for frame in own if _is_identity(frame["placement"])), None)
         for number, step in enumerate(steps):
             element = elements[number] if number < len(elements) else None
-            name = joint["name"] if element is None else element.get("name") or f"{joint['name']}_{number + 1}"
+            given = None if element is None else element.get("name")
+            name = given or joint["name"] + (f"_{number + 1}" if len(steps) > 1 else "")
             line = 1 if element is None else line_of(element)
             last = number == len(steps) - 1
             child = sits if last and sits is not None else _free_name(f"{name}_frame", self.links.keys() | set())
