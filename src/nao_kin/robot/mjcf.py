@@ -100,6 +100,7 @@ def _unread(root: etree._Element, name: str) -> list[str]:
             name, None, f"It has {bodies} bodies; at most {LIMITS.moving_joints} are read.", code="too-many"
         )
     _require_numbers(root, name)
+    _give_names(root)
     told = []
     for section, what in _LOST.items():
         found = root.find(section)
@@ -126,6 +127,19 @@ def _require_numbers(root: etree._Element, name: str) -> None:
             except NumberError as fault:
                 reason = f"The {attribute} of a <{tag_of(element)}> {fault}."
                 raise UrdfError(name, line_of(element), reason, code=fault.code) from None
+
+
+def _give_names(root: etree._Element) -> None:
+    """Pinocchio leaves out bodies without a name, and all that hangs on them."""
+    taken = {str(element.get("name")) for element in root.iter("body", "joint", "freejoint")}
+    world = root.find("worldbody")
+    for element in () if world is None else world.iter("body", "joint", "freejoint"):
+        if element.get("name") is None:
+            number = 1
+            while (name := f"{tag_of(element)}_{number}") in taken:
+                number += 1
+            taken.add(name)
+            element.set("name", name)
 
 
 def _is_mesh(element: etree._Element) -> bool:

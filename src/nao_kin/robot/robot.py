@@ -284,7 +284,7 @@ class Robot:
         if tip is None:
             frames = self.chain_frames.get(base) or self._other_chains.get(base)
             if frames is None:
-                raise UnknownNameError("chain", base, self.chain_names, self.name)
+                raise UnknownNameError("chain", base, self.chain_frames or self.chain_names, self.name)
             label = base
         else:
             frames = base, tip
