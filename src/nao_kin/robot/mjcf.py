@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -94,10 +95,10 @@ def _unread(root: etree._Element, name: str) -> list[str]:
     for element in root.iter("include"):
         reason = "It includes another file, which is not followed."
         raise UrdfError(name, line_of(element), reason, "Give the file that has the bodies.", code="not-robot")
-    bodies = sum(1 for _ in root.iter("body"))
+    bodies = max(sum(1 for _ in root.iter(tag)) for tag in ("body", "joint"))
     if bodies > LIMITS.moving_joints:
         raise UrdfError(
-            name, None, f"It has {bodies} bodies; at most {LIMITS.moving_joints} are read.", code="too-many"
+            name, None, f"It has {bodies} bodies or joints; at most {LIMITS.moving_joints} are read.", code="too-many"
         )
     _require_numbers(root, name)
     _give_names(root)
@@ -119,11 +120,11 @@ def _unread(root: etree._Element, name: str) -> list[str]:
 def _require_numbers(root: etree._Element, name: str) -> None:
     """Pinocchio takes what it can read of a list of numbers, and says nothing about the rest."""
     for element in root.iter("body", "joint", "inertial", "geom", "freejoint", "site", "frame"):
-        for attribute, count in _NUMBERS.items():
+        for attribute, wanted in _NUMBERS.items():
             text = element.get(attribute)
             try:
                 if text is not None and text.strip():
-                    decimal_numbers(text, count)
+                    decimal_numbers(text, wanted)
             except NumberError as fault:
                 reason = f"The {attribute} of a <{tag_of(element)}> {fault}."
                 raise UrdfError(name, line_of(element), reason, code=fault.code) from None
@@ -133,13 +134,11 @@ def _give_names(root: etree._Element) -> None:
     """Pinocchio leaves out bodies without a name, and all that hangs on them."""
     taken = {str(element.get("name")) for element in root.iter("body", "joint", "freejoint")}
     world = root.find("worldbody")
+    numbers = count(1)
     for element in () if world is None else world.iter("body", "joint", "freejoint"):
         if element.get("name") is None:
-            number = 1
-            while (name := f"{tag_of(element)}_{number}") in taken:
-                number += 1
-            taken.add(name)
-            element.set("name", name)
+            names = (f"{tag_of(element)}_{number}" for number in numbers)
+            element.set("name", next(name for name in names if name not in taken))
 
 
 def _is_mesh(element: etree._Element) -> bool:
