@@ -24,7 +24,6 @@ __all__ = [
     "TrajectoryFileError",
     "UnknownNameError",
     "UrdfError",
-    "UrdfWarning",
 ]
 
 
@@ -159,10 +158,6 @@ class UrdfError(_FileError):
     def __init__(self, path: str, line: int | None, reason: str, hint: str = "", *, code: str = "") -> None:
         super().__init__(path, line, reason, hint)
         self.code = code
-
-
-class UrdfWarning(UserWarning):
-    """A URDF file was read though something in it is wrong: all of it, with lines, in one warning a file."""
 
 
 class TableFileError(_FileError):

@@ -10,7 +10,8 @@ import pinocchio as pin
 import pytest
 
 import nao_kin as nk
-from nao_kin.errors import UrdfError, UrdfWarning
+from nao_kin.errors import UrdfError
+from nao_kin.urdf import UrdfWarning
 from nao_kin.urdf.elements import Box, Capsule, Cylinder, Sphere
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import nao_kin as nk
-from nao_kin.errors import UrdfError, UrdfWarning
+from nao_kin.errors import UrdfError
 from nao_kin.robot.robot import Robot
-from nao_kin.urdf import parse_urdf
+from nao_kin.urdf import UrdfWarning, parse_urdf
 from nao_kin.urdf.elements import Capsule, OtherShape
 from nao_kin.urdf.quaternion import rpy_of_quaternion
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 import typer
 
 from nao_kin.cli.shared_options import shared_options
-from nao_kin.errors import NaoKinError, UrdfWarning
+from nao_kin.errors import NaoKinError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -105,6 +105,8 @@ def main() -> NoReturn:
 
 def _plain(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> str:
     """A warning about a file in our words; others as Python prints them."""
+    from nao_kin.urdf import UrdfWarning
+
     if issubclass(category, UrdfWarning):
         return f"nao-kin: {message}\n"
     return f"{filename}:{lineno}: {category.__name__}: {message}\n"

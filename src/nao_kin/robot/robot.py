@@ -95,7 +95,13 @@ class Robot:
     def from_document(
         cls, document: UrdfDocument, known: KnownRobot | None = None, packages: PackageRoots = ()
     ) -> Robot:
-        """A robot from a parsed document, with what is known about it beyond that if it is a known one."""
+        """A robot from a parsed document, with what is known about it beyond that if it is a known one.
+
+        Args:
+            document: The file's content.
+            known: What is known about the robot, if it is one of the known.
+            packages: Package folders by name, or folders that hold packages, for the names of meshes.
+        """
         roots = [] if document.directory is None else [document.directory]
         roots += map(Path, packages.values() if isinstance(packages, Mapping) else packages)
         if known is None:

@@ -9,9 +9,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from nao_kin.errors import InvalidInputError, UnknownNameError, UrdfWarning
+from nao_kin.errors import InvalidInputError, UnknownNameError
 from nao_kin.robot.known import KnownRobot, find_known, robot_file
-from nao_kin.urdf import read_urdf
+from nao_kin.urdf import UrdfWarning, read_urdf
 from nao_kin.urdf.xacro import is_xacro_file, read_xacro
 
 if TYPE_CHECKING:

@@ -22,10 +22,14 @@ from nao_kin.urdf.writer import kinematic_xml
 if TYPE_CHECKING:
     from nao_kin.urdf.elements import UrdfJoint, UrdfLink
 
-__all__ = ["UNREADABLE", "UrdfDocument", "document_of", "parse_urdf", "read_bytes", "read_urdf"]
+__all__ = ["UNREADABLE", "UrdfDocument", "UrdfWarning", "document_of", "parse_urdf", "read_bytes", "read_urdf"]
 
 UNREADABLE = "unreadable"
 """Code of the refusals that say nothing about a file's content, because there is none to read."""
+
+
+class UrdfWarning(UserWarning):
+    """A URDF file was read though something in it is wrong: all of it, with lines, in one warning a file."""
 
 
 @dataclass(frozen=True)
