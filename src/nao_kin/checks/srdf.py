@@ -8,12 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from nao_kin.checks.subject import numbers
-from nao_kin.errors import UrdfError, near_matches
+from nao_kin.errors import UrdfError
+from nao_kin.urdf.connection import near_hint
 from nao_kin.urdf.document import parse_urdf, read_bytes
 from nao_kin.urdf.outline import Defect, children, describe, shown, tag_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from lxml import etree
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RULES", "Semantics", "urdf_of"]
 
-_COMPARED = 64  # longer names are not compared: the time that takes grows with the square of their length
 _ROUNDING = 1e-4  # [rad or m] states are printed to four digits
 _FOLDERS = (".", "../urdf", "../robots", "..")
 """Where the URDF of an SRDF is looked for, from the SRDF's own folder."""
@@ -117,7 +117,7 @@ def _unknown(semantics: Semantics, element: etree._Element, attribute: str, what
     name, known = element.get(attribute), semantics.links if what == "link" else semantics.joints
     if name is not None and name not in known and not (attribute == "parent_link" and not name):
         message = f"The {what} {shown(name)} of <{tag_of(element)}> is not a {what} of the robot."
-        yield Defect(f"srdf-unknown-{what}", element, message, _near(name, known), attribute)
+        yield Defect(f"srdf-unknown-{what}", element, message, near_hint(name, known), attribute)
 
 
 def groups(semantics: Semantics) -> Iterator[Defect]:
@@ -130,7 +130,7 @@ def groups(semantics: Semantics) -> Iterator[Defect]:
         name = element.get(attribute)
         if name is not None and name not in semantics.groups:
             message = f"The group {shown(name)} of <{tag_of(element)}> is not defined."
-            yield Defect("srdf-unknown-group", element, message, _near(name, semantics.groups), attribute)
+            yield Defect("srdf-unknown-group", element, message, near_hint(name, semantics.groups), attribute)
     for group in children(semantics.root, "group"):
         if any(sub.get("name") == group.get("name") for sub in children(group, "group")):
             message = f"The group {shown(group.get('name', ''))} holds itself."
@@ -195,8 +195,3 @@ RULES: tuple[Callable[[Semantics], Iterator[Defect]], ...] = (
     virtual_joints,
 )
 """All rules on an SRDF."""
-
-
-def _near(name: str, known: Iterable[str]) -> str:
-    near = near_matches(name[:_COMPARED], [other for other in known if len(other) <= _COMPARED])
-    return f"Did you mean {' or '.join(map(repr, near))}?" if near else ""

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 from nao_kin.checks.subject import numbers
 from nao_kin.errors import near_matches
+from nao_kin.urdf.connection import near_hint
 from nao_kin.urdf.fields import NumberError, decimal_numbers
 from nao_kin.urdf.outline import MOVING, Defect, children, first, line_of, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from lxml import etree
 
@@ -38,7 +39,7 @@ def controlled_joints(subject: Subject) -> Iterator[Defect]:
             known = subject.outline.joint_by_name
             if name not in known:
                 message = f"The joint {shown(name)} of <ros2_control> is not a joint of this robot."
-                yield Defect("control-joint", joint, message, _near(name, known), "name")
+                yield Defect("control-joint", joint, message, near_hint(name, known), "name")
             elif name in seen:
                 message = f"The joint {shown(name)} is in this <ros2_control> already, on line {line_of(seen[name])}."
                 yield Defect("control-joint", joint, message, "Name it once, with all its interfaces.", "name")
@@ -108,7 +109,7 @@ def transmission_joints(subject: Subject) -> Iterator[Defect]:
             if name not in subject.outline.joint_by_name:
                 message = f"The joint {shown(name)} of the <transmission> {shown(transmission.get('name', ''))} is not "
                 message += "a joint of this robot."
-                hint = _near(name, subject.outline.joint_by_name)
+                hint = near_hint(name, subject.outline.joint_by_name)
                 yield Defect("transmission-joint", joint, message, hint, "name")
 
 
@@ -119,9 +120,4 @@ def gazebo_references(subject: Subject) -> Iterator[Defect]:
         name = element.get("reference")
         if name and name not in known:
             message = f"The reference {shown(name)} of <gazebo> is neither a link nor a joint of this robot."
-            yield Defect("gazebo-reference", element, message, _near(name, known), "reference")
-
-
-def _near(name: str, known: Iterable[str]) -> str:
-    near = near_matches(name[:_COMPARED], [other for other in known if len(other) <= _COMPARED])
-    return f"Did you mean {' or '.join(map(repr, near))}?" if near else ""
+            yield Defect("gazebo-reference", element, message, near_hint(name, known), "reference")
