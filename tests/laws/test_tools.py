@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
@@ -16,6 +17,13 @@ from nao_kin.cli.app import main
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.tool import as_tool
 from nao_kin.se3 import from_xyz_rpy
+from nao_kin.view.contents import scene_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from nao_kin.view.scene import Scene
 
 T_TIP_TOOL = from_xyz_rpy((0.01, -0.02, 0.1034), (0.3, -0.2, 0.785))
 T_MOUNT_BASE = from_xyz_rpy((0.5, 0.1, 0.8), (0.0, 0.1, 1.2))
@@ -147,3 +155,34 @@ def test_commands_take_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     assert run(monkeypatch, "fk", "jaco2", "--tool", "1 2") == 2
     assert "expected" in capsys.readouterr().err
     assert run(monkeypatch, "check", "jaco2", "--tool", tool) == 2
+
+
+def test_pages_show_the_tools_frame(tmp_path: Path) -> None:
+    chain = nk.load("jaco2").chain("arm", tool=T_TIP_TOOL).with_base(T_MOUNT_BASE)
+    q = chain.lower.clip(-1.0) * 0.4 + chain.upper.clip(None, 1.0) * 0.6
+    result = nk.solve(chain, chain.pose(q), q0=q + 0.05)
+    for number, content in enumerate((result, chain, nk.compare(nk.to_dh(chain, convention="standard"), chain))):
+        scene = scene_of(content)
+        shown = scene.chains[1 if number == 2 else 0]
+        tip = np.eye(4) if number else _pose_in(scene, shown.tip, result.posture)
+        nk.export_html(tmp_path / f"{number}.html", content)
+        assert (tmp_path / f"{number}.html").stat().st_size > 10_000
+        if number == 0:
+            base = _pose_in(scene, shown.base, result.posture)
+            np.testing.assert_allclose(np.linalg.inv(base) @ tip, chain.pose(result.q).homogeneous, atol=1e-9)
+
+
+def _pose_in(scene: Scene, index: int | None, posture: Mapping[str, float]) -> np.ndarray:
+    """The pose of a node in the scene, as the page works it out."""
+    T = np.eye(4)
+    while index is not None:
+        node, moved = scene.nodes[index], np.eye(4)
+        if node.drive is not None:
+            value = node.drive.multiplier * posture[node.drive.joint] + node.drive.offset
+            axis = np.array(node.drive.axis)
+            moved[:3, :3], moved[:3, 3] = (
+                (np.eye(3), axis * value) if node.drive.slides else (pin.exp3(axis * value), 0.0)
+            )
+        T = node.placement @ moved @ T
+        index = node.parent
+    return T

@@ -12,6 +12,7 @@ from lxml import etree
 from tests.urdf.macro_packages import ARGUMENTS, FILES, write_packages
 
 import nao_kin as nk
+from nao_kin.cli.app import main
 from nao_kin.errors import InvalidInputError, UrdfError
 from nao_kin.urdf.xacro import expand_xacro, read_xacro
 
@@ -146,3 +147,28 @@ def test_arguments_are_for_files_that_take_them(packages: Path) -> None:
         nk.load("nao", arguments={"name": "x"})
     with pytest.raises(InvalidInputError, match="text, a number or a truth value"):
         nk.load(packages / FILES["nao"], arguments={"name": [1]})
+
+
+def test_commands_take_arguments_and_packages(
+    packages: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lonely = tmp_path / "cell.urdf.xacro"
+    lonely.write_text((packages / FILES["ur"]).read_text())
+    monkeypatch.chdir(tmp_path)
+    given = ["name:=ur5e", "tf_prefix:=l_", "--package", f"ur_description={packages / 'ur_description'}"]
+    for words, status in (
+        (["fk", "cell.urdf.xacro", "--tip", "l_shoulder_link", "0.3"], 0),
+        (["html", "cell.urdf.xacro", "-o", "page.html"], 0),
+        (["compare", "cell.urdf.xacro:world:l_shoulder_link", "cell.urdf.xacro:world:l_shoulder_link"], 0),
+        (["diff", "cell.urdf.xacro", str(packages / FILES["ur"])], 0),
+        (["check", "cell.urdf.xacro"], 0),
+    ):
+        monkeypatch.setattr("sys.argv", ["nao-kin", *words, *given])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        assert (caught.value.code or 0) == status, capsys.readouterr()
+    assert (tmp_path / "page.html").is_file()
+    monkeypatch.setattr("sys.argv", ["nao-kin", "fk", "cell.urdf.xacro", "--tip", "l_shoulder_link"])
+    with pytest.raises(SystemExit) as caught:
+        main()
+    assert caught.value.code == 2

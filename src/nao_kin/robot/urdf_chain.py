@@ -121,6 +121,11 @@ class UrdfChain(FlatChain):
         return pin.SE3.Identity() if self._tool is None else pin.SE3(self._tool)
 
     @property
+    def mount(self) -> pin.SE3:
+        """T_mount_base, where the base's link is in the frame that poses are given in; the identity without a mount."""
+        return pin.SE3.Identity() if self._mount is None else pin.SE3(self._mount)
+
+    @property
     def is_bare(self) -> bool:
         """Whether it has neither a tool nor another base than a link."""
         return self._tool is None and self._mount is None
