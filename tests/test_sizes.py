@@ -18,6 +18,7 @@ _SECTION = "a section of a document: each claim's formula, check and text are on
 
 LONG_FILES: dict[str, str] = {
     "src/nao_kin/robot/robot.py": "what users hold: every question that a robot answers",
+    "src/nao_kin/analytic/certifying.py": "one pass over what closed forms wrote: placed, measured, kept once",
     "src/nao_kin/analytic/hexapod/body.py": "one pose of the body, or many, by the same steps",
     "src/nao_kin/analytic/nao/nao_arm_kernel.py": "one compiled solver: pose, position and pointing share its joints",
     "src/nao_kin/analytic/nao/nao_leg.py": "a closed form: how its geometry is recognised, and its solver",
