@@ -17,6 +17,8 @@ SCRIPTS = sorted((ROOT / "src").rglob("*.js"))
 _SECTION = "a section of a document: each claim's formula, check and text are one thought"
 
 LONG_FILES: dict[str, str] = {
+    "src/nao_kin/robot/robot.py": "what users hold: every question that a robot answers",
+    "src/nao_kin/analytic/certifying.py": "one pass over what closed forms wrote: placed, measured, kept once",
     "src/nao_kin/analytic/hexapod/body.py": "one pose of the body, or many, by the same steps",
     "src/nao_kin/analytic/nao/nao_arm_kernel.py": "one compiled solver: pose, position and pointing share its joints",
     "src/nao_kin/analytic/nao/nao_leg.py": "a closed form: how its geometry is recognised, and its solver",
@@ -45,6 +47,9 @@ LONG_FILES: dict[str, str] = {
     "src/nao_kin/trajectory/following.py": "a path followed, between its samples and in time",
 }
 SHORT_FILES: dict[str, str] = {
+    "src/nao_kin/checks/digits.py": "a question that rules on twins and on limits ask",
+    "src/nao_kin/cli/diff_command.py": "a command",
+    "src/nao_kin/urdf/quaternion.py": "one conversion, without Pinocchio",
     "src/nao_kin/__main__.py": "what Python calls it",
     "src/nao_kin/analytic/ranges.py": "a rule that four closed forms share",
     "src/nao_kin/checks/catalogue/entry.py": "the row that every list of codes imports",

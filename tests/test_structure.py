@@ -30,8 +30,12 @@ def test_no_module_bears_the_name_of_a_public_function() -> None:
     assert functions & {module.path.stem for module in FOUND} == set()
 
 
+# Rooms whose modules are rows of one table: rules, codes and formats are imported by their list, and by nobody else.
+ROWS = ("nao_kin.checks.rules.", "nao_kin.checks.catalogue.", "nao_kin.checks.formats.")
+
+
 def test_few_modules_have_a_single_importer() -> None:
-    assert len(structure.lone(FOUND)) <= 60
+    assert len([name for name in structure.lone(FOUND) if not name.startswith(ROWS)]) <= 50
 
 
 def test_few_signatures_are_wide() -> None:

@@ -30,6 +30,7 @@ SECONDS = 5.0  # of processor time that one mutant may take; what else the machi
 HANG = 120.0  # without a word a process is ended
 MEMORY = 4 * 1024**3
 BATCH = 250
+VERSIONED, MACROS, MUJOCO = 0.15, 0.02, 0.02  # parts; the last two take a process a mutant
 COMPARED = 16  # every so many mutants, by yourdfpy too: about 500 of 20 000 that are without errors
 
 
@@ -47,25 +48,69 @@ def mutant_of(number: int, seed: int, files: list[Path]) -> tuple[Path, bytes]:
     """The mutant of that number and what it was made of; the same for the same seed."""
     import numpy as np
 
+    from check_trials.macros import MACRO_FILES, MJCF, macro_file
     from check_trials.mutants import mutant
+    from check_trials.versions import versioned_robot
 
     rng = np.random.default_rng([seed, number])
+    kind = float(rng.random())
+    if kind < VERSIONED:
+        return Path("versioned.urdf"), mutant(versioned_robot(rng), rng)
+    if kind < VERSIONED + MACROS:
+        name = MACRO_FILES[int(rng.integers(len(MACRO_FILES)))]
+        return Path(f"{name}.xacro"), mutant(macro_file(name), rng)
+    if kind < VERSIONED + MACROS + MUJOCO:
+        return Path("arm.xml"), mutant(MJCF, rng)
     source = files[int(rng.integers(len(files)))]
     return source, mutant(source.read_bytes(), rng)
 
 
-def examine(data: bytes, seed: int, compared: bool) -> dict[str, Any]:
+def examine(source: Path, data: bytes, seed: int, compared: bool) -> dict[str, Any]:
     """The verdict on one mutant, and what the promise about files without errors is worth on it."""
-    from nao_kin.checks.checker import check_bytes
+    from nao_kin.checks.checker import check, check_bytes
+    from nao_kin.urdf.xacro import expand_xacro
 
+    if source.suffix == ".xml":
+        return _mjcf_verdict(data)
     start = time.process_time()
-    report = check_bytes(data, "mutant.urdf")
+    if source.suffix == ".xacro":
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "mutant.urdf.xacro"
+            path.write_bytes(data)
+            report = check(path, arguments={"name": "ur5e"})
+            data = b"" if report.errors else expand_xacro(path, {"name": "ur5e"}).data
+    else:
+        report = check_bytes(data, "mutant.urdf")
     seconds = time.process_time() - start
     verdict = {"seconds": seconds, "codes": list(report.codes), "errors": len(report.errors), "broken": ""}
     if not report.errors:
         say({"checked": True})  # so that a crash from here on is known to be Pinocchio's
         verdict["broken"] = _broken_promise(data, seed, compared)
     return verdict
+
+
+def _mjcf_verdict(data: bytes) -> dict[str, Any]:
+    """A mutant of an MJCF file loads with finite poses, or is refused."""
+    import warnings
+
+    import numpy as np
+
+    from nao_kin.errors import NaoKinError
+    from nao_kin.robot.robot import load
+
+    start, broken, codes = time.process_time(), "", []
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        path = Path(folder) / "mutant.xml"
+        path.write_bytes(data)
+        try:
+            poses = load(path).link_poses({})
+        except NaoKinError as refusal:
+            codes = [getattr(refusal, "code", "refused")]
+        else:
+            if not all(np.isfinite(pose.homogeneous).all() for pose in poses.values()):
+                broken = "a pose is not finite"
+    return {"seconds": time.process_time() - start, "codes": codes, "errors": len(codes), "broken": broken}
 
 
 def _broken_promise(data: bytes, seed: int, compared: bool) -> str:
@@ -114,7 +159,7 @@ def work(first: int, last: int, seed: int) -> None:
         say({"number": number})
         source, data = mutant_of(number, seed, files)
         compared = number % COMPARED == 0
-        say({"source": source.name, **examine(data, number, compared), "compared": compared})
+        say({"source": source.name, **examine(source, data, number, compared), "compared": compared})
 
 
 @dataclass

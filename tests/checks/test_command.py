@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -32,6 +32,11 @@ class Done(NamedTuple):
 
 
 Run = Callable[..., Done]
+
+
+def departures(done: Done) -> list[dict[str, Any]]:
+    """What a comparison has found, without the notes on the file itself."""
+    return [finding for finding in json.loads(done.stdout)["findings"] if finding["severity"] != "note"]
 
 
 @pytest.fixture
@@ -101,7 +106,7 @@ def test_standard_input_is_checked_without_a_folder() -> None:
         capture_output=True,
         check=False,
     )
-    (finding,) = json.loads(done.stdout)["findings"]
+    (finding,) = departures(done)
     assert (finding["path"], finding["code"]) == ("<stdin>", "mesh-package")
 
 
@@ -138,7 +143,7 @@ def test_a_table_that_departs_is_a_finding_at_its_joint(run: Run, tmp_path: Path
     table.write_text(nk.document_chain("practicum_jaco2").to_toml())
     done = run("check", JACO, "--dh", table, "--format", "json")
     assert done.returncode == 1
-    (finding,) = json.loads(done.stdout)["findings"]
+    (finding,) = departures(done)
     text = JACO.read_text().split("\n")
     assert (finding["code"], finding["severity"]) == ("departs-from-table", "error")
     assert "row 5 (joint_5): d" in finding["hint"]
@@ -152,10 +157,10 @@ def test_another_model_that_departs_is_a_finding_at_each_joint(run: Run, tmp_pat
     other = tmp_path / "other.urdf"
     other.write_text(JACO.read_text().replace('name="joint_3"', 'name="joint_three"'))
     done = run("check", JACO, "--against", other, "--format", "json")
-    (finding,) = json.loads(done.stdout)["findings"]
+    (finding,) = departures(done)
     assert "joint_three" in finding["message"]
     other.write_text(JACO.read_text().replace("0.2073", "0.2083"))
-    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    (finding,) = departures(run("check", JACO, "--against", other, "--format", "json"))
     assert finding["code"] == "departs-from-model"
     assert "1 mm" in finding["message"]
 
@@ -166,7 +171,7 @@ def test_ends_that_sit_elsewhere_are_a_finding_at_the_joint_above(run: Run, tmp_
     above = text[text.index('<child link="end_effector"/>') :]
     origin = above[above.index("<origin") : above.index("/>", above.index("<origin"))]
     other.write_text(text.replace(origin, '<origin xyz="0 0 -0.2" rpy="0 0 0"'))
-    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    (finding,) = departures(run("check", JACO, "--against", other, "--format", "json"))
     assert "only the ends differ" in finding["message"]
     assert '<child link="end_effector"/>' in "".join(text.split("\n")[finding["line"] - 1 : finding["line"] + 2])
 
@@ -174,10 +179,10 @@ def test_ends_that_sit_elsewhere_are_a_finding_at_the_joint_above(run: Run, tmp_
 def test_a_frame_or_a_joint_that_the_other_model_lacks_is_a_finding(run: Run, tmp_path: Path) -> None:
     other = tmp_path / "other.urdf"
     other.write_text(JACO.read_text().replace('"end_effector"', '"tool"'))
-    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    (finding,) = departures(run("check", JACO, "--against", other, "--format", "json"))
     assert "'end_effector' is not in" in finding["message"]
     other.write_text(JACO.read_text().replace('"link_base"', '"base"'))
-    (finding,) = json.loads(run("check", JACO, "--against", other, "--format", "json").stdout)["findings"]
+    (finding,) = departures(run("check", JACO, "--against", other, "--format", "json"))
     assert "nothing can be compared" in finding["message"]
     done = run("check", BAD, "--against", JACO)
     assert "was not compared" in done.stderr

@@ -24,6 +24,11 @@ def test_500_mutants_break_no_promise() -> None:
     assert "broken promises               0" in text
 
 
+def test_200_files_of_every_version_are_read_as_pinocchio_reads_them() -> None:
+    text = lines_of(TOOLS / "compare_versions.py", "--files", 200, "--seed", 5)
+    assert "different from Pinocchio      0" in text
+
+
 def test_a_round_of_defects_is_found() -> None:
     needs_examples()
     text = lines_of(TOOLS / "seed_defects.py", "--defects", 61, "--seed", 3, "--robots", 14)

@@ -123,7 +123,7 @@ def test_solids(document: UrdfDocument) -> None:
     assert sphere.shape == Sphere(0.5)
     shapes = [solid.shape for solid in document.link("base").collisions]
     assert MeshFile("package://x/y.stl", (1.0, 1.0, -1.0)) in shapes
-    assert OtherShape("capsule") in shapes, "not a shape of URDF, but there"
+    assert OtherShape("capsule") in shapes, "not a shape of URDF 1.0, but there"
 
 
 def test_colours(document: UrdfDocument) -> None:

@@ -20,6 +20,11 @@ def two_links(inside: str = LIMIT, kind: str = "revolute") -> str:
     )
 
 
+def newer(inside: str, version: str = "1.1", kind: str = "revolute") -> str:
+    """The same in a later version of the format."""
+    return two_links(inside, kind).replace('name="r"', f'name="r" version="{version}"')
+
+
 def one_link(inside: str) -> str:
     """A file of one link whose content starts on line 3."""
     return f'<robot name="r">\n<link name="a">\n{inside}\n</link>\n</robot>'
@@ -75,6 +80,15 @@ REFUSED: dict[str, tuple[str, str, int, str]] = {
         "if",
     ),
     "xacro without namespace": ("", "<robot>\n<xacro:if/></robot>", 2, "unexpanded xacro"),
+    "xacro in a joint": ("unexpanded-xacro", two_links(f"<xacro:origin {XACRO}/>" + LIMIT), 7, "xacro:origin"),
+    "macro that a link is missing from": (
+        "unexpanded-xacro",
+        two_links().replace('<robot name="r">', f'<robot name="r" {XACRO}>\n<xacro:arm/>').replace('"a"', '"x"', 1),
+        2,
+        "xacro:arm",
+    ),
+    "version of the future": ("urdf-version", '<robot name="r" version="1.3"><link name="a"/></robot>', 1, "'1.3'"),
+    "version of one number": ("urdf-version", '<robot name="r" version="1"><link name="a"/></robot>', 1, "'1'"),
     "xacro value": ("unexpanded-xacro", one_link('<visual name="${x}"/>'), 3, r"\$\{x\}"),
     "xacro argument": ("unexpanded-xacro", visual('<mesh filename="$(find p)/x.stl"/>'), 4, "find p"),
     "xacro robot name": ("unexpanded-xacro", '<robot name="$(arg name)"><link name="a"/></robot>', 1, "arg name"),
@@ -131,7 +145,6 @@ REFUSED: dict[str, tuple[str, str, int, str]] = {
     "underscore": ("not-a-number", two_links('<axis xyz="1_0 0 0"/>' + LIMIT), 7, "'1_0'"),
     "other digits": ("not-a-number", two_links('<axis xyz="١ 0 0"/>' + LIMIT), 7, "not a finite decimal"),
     "other blanks": ("wrong-count", two_links('<axis xyz="1\u20030\u20030"/>' + LIMIT), 7, "1 number instead of 3"),
-    "axis without direction": ("missing-number", two_links("<axis/>" + LIMIT), 7, "xyz .* is missing"),
     "limit word": ("not-a-number", two_links(LIMIT.replace('"-1"', '"low"')), 7, "lower .* 'low'"),
     "negative velocity": ("negative-limit", two_links(LIMIT.replace('velocity="1"', 'velocity="-1"')), 7, "below 0"),
     "negative effort": ("negative-limit", two_links(LIMIT.replace('effort="1"', 'effort="-1"')), 7, "below 0"),
@@ -160,8 +173,25 @@ REFUSED: dict[str, tuple[str, str, int, str]] = {
     "almost zero axis": ("zero-axis", two_links('<axis xyz="0 9e-13 0"/>' + LIMIT), 7, "no length"),
     "revolute without limit": ("missing-limit", two_links(""), 4, "no <limit>.*continuous"),
     "prismatic without limit": ("missing-limit", two_links("", "prismatic"), 4, "no <limit>"),
-    "inverted limits": ("inverted-limit", two_links('<limit lower="1" upper="-1"/>'), 7, "above its upper.*swapped"),
-    "limit against a default": ("inverted-limit", two_links('<limit lower="0.5"/>'), 7, "upper limit is missing"),
+    "inverted limits, 1.2": ("inverted-limit", newer('<limit lower="1" upper="-1"/>', "1.2"), 7, "above.*swapped"),
+    "inverted and fixed, 1.2": ("inverted-limit", newer('<limit lower="1" upper="-1"/>', "1.2", "fixed"), 7, "above"),
+    "no upper limit, 1.2": ("incomplete-limit", newer('<limit lower="-0.5"/>', "1.2"), 7, "no upper.*1.2 .* demands"),
+    "negative acceleration, 1.2": (
+        "negative-limit",
+        newer(LIMIT.replace("/>", ' acceleration="-1"/>'), "1.2"),
+        7,
+        "acceleration .* below 0",
+    ),
+    "jerk in words, 1.2": ("not-a-number", newer(LIMIT.replace("/>", ' jerk="much"/>'), "1.2", "fixed"), 7, "jerk"),
+    "two rotations": ("two-rotations", newer('<origin rpy="0 0 1" quat_xyzw="0 0 0 1"/>' + LIMIT), 7, "twice"),
+    "no quaternion": ("zero-quaternion", newer('<origin quat_xyzw="0 0 0 0"/>' + LIMIT), 7, "no length.*0 0 0 1"),
+    "three of a quaternion": ("wrong-count", newer('<origin quat_xyzw="0 0 1"/>' + LIMIT), 7, "3 numbers instead of 4"),
+    "capsule without length": (
+        "missing-number",
+        visual('<capsule radius="1"/>').replace('name="r"', 'name="r" version="1.1"'),
+        4,
+        "length .* missing",
+    ),
     "mimic without joint": ("unknown-leader", mimics("", "<mimic/>"), 3, "names no joint"),
     "mimic unknown": ("unknown-leader", mimics("", '<mimic joint="J0x"/>'), 3, "'J0x'.*mean 'j0'"),
     "mimic itself": ("self-mimic", mimics("", '<mimic joint="j1"/>'), 3, "mimics itself"),
@@ -238,7 +268,17 @@ PASSED = {
     "half an inertial": solid_numbers('<mass value="1"/>'),
     "flat box": visual('<box size="0 1 1"/>'),
     "mirrored mesh": visual('<mesh filename="x.stl" scale="-1 1 1"/>'),
-    "capsule": visual('<capsule radius="x"/>'),
+    "capsule before 1.1": visual('<capsule radius="x"/>'),
+    "quaternion before 1.1": two_links('<origin rpy="0 0 1" quat_xyzw="x"/>' + LIMIT),
+    "acceleration before 1.2": newer(LIMIT.replace("/>", ' acceleration="-x"/>')),
+    "limits without speed, 1.2": newer('<limit lower="-1" upper="1"/>', "1.2"),
+    "endless without limits, 1.2": newer("<limit/>", "1.2", "continuous"),
+    "swapped limits, told at loading": two_links('<limit lower="1" upper="-1"/>'),
+    "half a swapped limit": newer('<limit lower="0.5"/>'),
+    "axis without direction": two_links("<axis/>" + LIMIT),
+    "fixed axis without direction": two_links("<axis/>", "fixed"),
+    "prefix of a simulator": two_links(LIMIT).replace("</robot>", "<gazebo><sensor:camera x:y='1'/></gazebo></robot>"),
+    "macro beside a whole robot": two_links(LIMIT).replace("</robot>", "<xacro:gripper a='${b}'/></robot>"),
     "chain of followers": mimics("", '<mimic joint="j0"/>', '<mimic joint="j1" multiplier="-2"/>'),
     "follower before its leader": mimics('<mimic joint="j1"/>', ""),
     "other programs": '<robot name="r"><link name="a"/><gazebo><origin xyz="x"/><x y="$(arg z)"/></gazebo></robot>',
@@ -257,7 +297,7 @@ def test_near_miss_passes(text: str) -> None:
 
 
 def test_first_defect_of_the_file_is_reported() -> None:
-    text = two_links('<limit lower="2" upper="1"/>\n<axis xyz="0 0 0"/>').replace('link="b"', 'link="c"')
+    text = newer('<limit lower="2" upper="1"/>\n<axis xyz="0 0 0"/>', "1.2").replace('link="b"', 'link="c"')
     assert [defect.line for defect in defects(etree.fromstring(text.encode()))] == [6, 8, 7]
     with pytest.raises(UrdfError, match="'c'") as caught:
         parse_urdf(text.encode())

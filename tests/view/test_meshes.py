@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from nao_kin.urdf.elements import Box, Cylinder, Sphere
+from nao_kin.urdf.elements import Box, Capsule, Cylinder, Sphere
 from nao_kin.view.crease import split_creases
 from nao_kin.view.meshes import triangulate
 
@@ -75,3 +75,15 @@ def test_neighbours_of_opposite_orientation_still_meet_at_their_edge() -> None:
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     vertices, _ = split_creases(square, np.array([[0, 1, 2], [0, 3, 2]]))
     assert len(vertices) == 6
+
+
+@pytest.mark.parametrize(("radius", "length"), [(0.05, 0.4), (0.2, 0.01), (0.1, 0.0)])
+def test_a_capsule_is_a_cylinder_between_half_balls(radius: float, length: float) -> None:
+    part = triangulate(Capsule(radius, length))
+    size = np.ptp(part.vertices, axis=0)
+    np.testing.assert_allclose(size, (2.0 * radius, 2.0 * radius, length + 2.0 * radius), rtol=2e-3)
+    body = trimesh.Trimesh(part.vertices, part.faces)
+    body.merge_vertices()
+    true = math.pi * radius**2 * (length + 4.0 / 3.0 * radius)
+    assert body.is_watertight
+    assert 0.99 * true < body.volume < true

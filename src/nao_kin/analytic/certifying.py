@@ -14,6 +14,7 @@ import numpy as np
 from nao_kin.ik.aim import goal_violation
 from nao_kin.ik.measure import errors
 from nao_kin.ik.problem import Status, verdicts
+from nao_kin.ik.target import POINTING
 from nao_kin.kernels.compiling import leaf_jit, parallel_jit, prange
 from nao_kin.kernels.forward import poses
 from nao_kin.kernels.joint_limits import inside_ranges, packed_rules
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ABSENT",
+    "BESIDE",
     "MEETS",
     "SAME",
     "SOLVED",
@@ -41,6 +43,9 @@ __all__ = [
 
 SAME: Final = 1e-9
 """Solutions of one goal whose joints are all this near, up to whole turns, are one [rad or m]."""
+
+BESIDE: Final = 1e-5
+"""A solution that just misses and is this near [rad or m] to one that meets is that one, with lost digits."""
 
 MEETS: Final = 1e-10
 """A solution that misses by more than this [m, rad] and a thousand times what the best one does is none."""
@@ -135,11 +140,13 @@ class Wish(NamedTuple):
         kind: A value of `nao_kin.ik.target.KINDS`.
         counted: Bits of the axes that count, see `nao_kin.ik.measure.errors`.
         allowed: Tolerances (3,): position [m], rotation [rad], limits [rad or m].
+        over: Whether a goal binds more than there are joints.
     """
 
     kind: int
     counted: int
     allowed: Floats
+    over: bool
 
 
 class Placed(NamedTuple):
@@ -194,7 +201,16 @@ def certify(
     Q = np.empty((int(ends[-1]) if len(ends) else 0, len(written.template)))
     _gather(written, ends, ranges, Q)
     allowed = np.array([tolerances.position, tolerances.rotation, tolerances.limits])
-    _keep(Wish(kind, counted, allowed), goals, written, ends, Placed(Q, poses(path, Q)), ranges, certificate)
+    conditions = counted.bit_count() - (kind == POINTING)
+    _keep(
+        Wish(kind, counted, allowed, conditions > Q.shape[1]),
+        goals,
+        written,
+        ends,
+        Placed(Q, poses(path, Q)),
+        ranges,
+        certificate,
+    )
     reached = certificate.codes != ABSENT
     ended = np.full(certificate.codes.shape, SOLVED)
     certificate.codes[reached] = verdicts(ended, reached, certificate.codes == _INSIDE)[reached]
@@ -235,7 +251,7 @@ def _keep(
     for i in prange(goals.shape[0]):
         first = ends[i] - written.counts[i]
         _measure(asked, goals[i], i, first, written, every, ranges, certificate)
-        _drop(i, certificate)
+        _drop(i, asked.over, certificate)
 
 
 @leaf_jit
@@ -279,7 +295,7 @@ def _finite(q: Floats) -> bool:
 
 
 @leaf_jit
-def _drop(i: int, certificate: Certificate) -> None:
+def _drop(i: int, over: bool, certificate: Certificate) -> None:
     """Empties the places of a target whose solutions just miss where another meets, or repeat an earlier one."""
     codes, B = certificate.codes, certificate.codes.shape[1]
     best = math.inf
@@ -287,15 +303,30 @@ def _drop(i: int, certificate: Certificate) -> None:
         if codes[i, b] != ABSENT:
             best = min(best, _error(i, b, certificate))
     for b in range(B):
-        if codes[i, b] != ABSENT and (
-            _error(i, b, certificate) > max(MEETS, _FEWER * best) or _repeats(i, b, certificate)
-        ):
+        bound = max(MEETS, _FEWER * best)
+        misses = codes[i, b] != ABSENT and _error(i, b, certificate) > bound
+        if misses and certificate.branches[i, b, 1] != 0 and not over:
+            misses = _is_beside(i, b, bound, certificate)
+        if codes[i, b] != ABSENT and (misses or _repeats(i, b, certificate)):
             codes[i, b] = ABSENT
         if codes[i, b] == ABSENT:
             certificate.branches[i, b, 0], certificate.branches[i, b, 1] = 0, 0
             certificate.position_error[i, b], certificate.rotation_error[i, b] = math.nan, math.nan
             for k in range(certificate.q.shape[2]):
                 certificate.q[i, b, k] = math.nan
+
+
+@leaf_jit
+def _is_beside(i: int, b: int, bound: float, certificate: Certificate) -> bool:
+    """Whether a solution that just misses is next to one that meets."""
+    for other in range(certificate.codes.shape[1]):
+        if certificate.codes[i, other] != ABSENT and _error(i, other, certificate) <= bound:
+            away = 0.0
+            for k in range(certificate.q.shape[2]):
+                away = max(away, abs(certificate.q[i, b, k] - certificate.q[i, other, k]))
+            if away <= BESIDE:
+                return True
+    return False
 
 
 @leaf_jit

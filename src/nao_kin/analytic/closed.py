@@ -18,10 +18,13 @@ from nao_kin.chain import configuration, into_limits, neutral
 from nao_kin.errors import InvalidInputError
 from nao_kin.ik import compiled_loop as loop
 from nao_kin.ik.batch import CHUNK, BatchResult, Wanted, audit_batch, judge_rows, starts_of
+from nao_kin.ik.measure import measure_many
 from nao_kin.ik.methods import METHODS
 from nao_kin.ik.problem import IKResult, Problem, Run, Status, judge
 from nao_kin.ik.reach import reach_shell
-from nao_kin.ik.target import Target, TargetLike
+from nao_kin.ik.reference_loop import Budget
+from nao_kin.ik.single import solve
+from nao_kin.ik.target import KINDS, Target, TargetLike
 from nao_kin.tolerances import TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
@@ -36,6 +39,7 @@ __all__ = ["solve_closed", "solve_closed_batch"]
 
 _TURN: Final = 2.0 * math.pi
 _EQUAL: Final = 1e-9
+_NEARBY: Final = Budget(restarts=0)
 _ANY: Final = 1e300  # tolerances [m, rad] that the nearest branch is within, wherever it is
 
 
@@ -75,6 +79,8 @@ def solve_closed(
     q = _wound(chain, np.array([result.q for result in every]), start, tolerances.limits)
     best = int(_nearest(q, start))
     run = Run(q[best], Status.SOLVED, branch=every[best].branch)
+    if any(result.run.singular for result in every) or judge(problem, Run(start.copy(), Status.SOLVED)).solved:
+        run.q = _nearer_member(problem, start, q[best])
     return judge(problem, run if jump is None else replace(run, start=start, jump=allowed))
 
 
@@ -143,6 +149,22 @@ def _nearest(q: Floats, start: Floats, candidates: NDArray[np.bool_] | bool = Tr
     return np.asarray(moves.argmin(axis=-1))
 
 
+def _stands_there(
+    chain: Chain, wanted: Wanted, rows: slice, starts: Floats, tolerances: Tolerances
+) -> NDArray[np.bool_]:
+    """Whether each start (N, n), or (1, n) for all, is at its target already (N,)."""
+    goals = wanted.goals(rows)
+    T = np.broadcast_to(chain.poses(starts), (len(goals), 4, 4))
+    position, rotation = measure_many(KINDS[wanted.first.kind], goals, wanted.first.counts, T)
+    return np.asarray(~((position > tolerances.position) | (rotation > tolerances.rotation)))
+
+
+def _nearer_member(problem: Problem, start: Floats, found: Floats) -> Floats:
+    """The joints found (n,), or nearer ones of a continuum that a branch only stands for: where steps from q0 lead."""
+    near = solve(problem.chain, problem.target, start, tolerances=problem.tolerances, budget=_NEARBY)
+    return near.q.copy() if near.solved and np.abs(near.q - start).max() < np.abs(found - start).max() else found
+
+
 def _least(errors: Floats) -> NDArray[np.bool_]:
     """The least of the errors (…, B) and its equals up to rounding, as those of a branch and its mirror image are."""
     return np.asarray(errors <= errors.min(axis=-1, keepdims=True) * (1.0 + _EQUAL) + _EQUAL * _EQUAL)
@@ -173,6 +195,14 @@ def _outcomes(
     present, within = every.codes != ABSENT, every.codes == SOLVED
     candidates = within | (present & ~within.any(axis=1, keepdims=True))
     outcomes[:, loop.OUTCOME :] = q[np.arange(len(q)), _nearest(q, starts[:, None, :], candidates)]
+    there = _stands_there(chain, wanted, rows, starts, tolerances) | (every.branches[:, :, 1] != 0).any(axis=1)
+    for i in np.flatnonzero(there & present.any(axis=1)):
+        goal = Target(
+            wanted.first.kind, wanted.goals(slice(rows.start + i, rows.start + i + 1))[0], wanted.first.weights
+        )
+        own = starts[i if len(starts) > 1 else 0]
+        best = outcomes[i, loop.OUTCOME :].copy()
+        outcomes[i, loop.OUTCOME :] = _nearer_member(Problem(chain, goal, tolerances), own, best)
     missed = np.flatnonzero(~present.any(axis=1))
     if len(missed):
         given = wanted.given[rows][missed]

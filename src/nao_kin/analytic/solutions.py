@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
-from nao_kin.analytic.certifying import MEETS, SAME, placed
+from nao_kin.analytic.certifying import BESIDE, MEETS, SAME, placed
 from nao_kin.analytic.form import GOALS
 from nao_kin.analytic.matching import Matched, matched
 from nao_kin.chain import configuration, value_unit
@@ -179,10 +179,10 @@ def judged(found: Matched, problem: Problem, slack: float, *, windings: bool = F
     for row in rows[:count]:
         q = found.template.copy()
         q[list(found.columns)] = row[:n]
-        label = form.label(int(row[n]), int(row[n + 1]))
+        label, singular = form.label(int(row[n]), int(row[n + 1])), bool(row[n + 1])
         inside = placed(q, found.ranges)
         for wound in _windings(problem.chain, inside, problem.tolerances.limits) if windings else [inside]:
-            yield judge(problem, Run(wound, Status.SOLVED, branch=label))
+            yield judge(problem, Run(wound, Status.SOLVED, branch=label, singular=singular))
 
 
 def _windings(chain: Chain, q: Floats, tolerance: float) -> Iterator[Floats]:
@@ -203,15 +203,30 @@ def _kept(results: Iterable[IKResult]) -> list[IKResult]:
     """The results that reach their target, each once.
 
     Of a goal with more conditions than joints, a branch that just misses while another one meets is not a solution,
-    though it may be within tolerance.
+    though it may be within tolerance. Where there are joints enough, one that stands for others is one all the same:
+    a member of a continuum that a rounded target has left by less than the tolerance.
     """
     reached = [result for result in results if result.status in _REACHED]
     bound = max(MEETS, 1e3 * min((error_of(result) for result in reached), default=0.0))
     good: list[IKResult] = []
     for result in reached:
-        if error_of(result) <= bound and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
+        meets = error_of(result) <= bound
+        if not meets and result.run.singular and not _is_overdetermined(result):
+            exact = (other for other in reached if error_of(other) <= bound)
+            meets = all(np.abs(result.q - other.q).max() > BESIDE for other in exact)
+        if meets and not any(np.abs(result.q - other.q).max() <= SAME for other in good):
             good.append(result)
     return good
+
+
+def _is_overdetermined(result: IKResult) -> bool:
+    """Whether the target binds more than there are joints."""
+    return conditions(result.problem.target) > len(result.problem.chain.joints)
+
+
+def conditions(target: Target) -> int:
+    """How many numbers a target binds."""
+    return target.counts.bit_count() - (target.kind == "pointing")
 
 
 def error_of(result: IKResult) -> float:
@@ -229,9 +244,11 @@ def _miss(border: Sequence[IKResult]) -> str:
 
 
 def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
-    """The solution whose largest joint move from q is least, whole turns of a turning joint left out.
+    """The solution whose largest joint move from q is least.
 
-    Only solutions within limits are compared. If there is none, the others are, and the result's status says so.
+    Whole turns count, since a joint with limits has to make them; only of a joint that turns without limits they do
+    not. With ``windings=True`` of `solve_all` every turn that the limits allow is among the results. Only solutions
+    within limits are compared. If there is none, the others are, and the result's status says so.
 
     Args:
         results: What `solve_all` returned.
@@ -249,10 +266,10 @@ def nearest(results: Iterable[IKResult], q: ArrayLike) -> IKResult:
         raise InvalidInputError("results", "at least one solution", reason.rstrip("."))
     chain = every[0].problem.chain
     start = configuration(chain, q)
-    turning = np.array([joint.kind != "prismatic" for joint in chain.joints])
+    endless = np.isinf(chain.lower) & np.isinf(chain.upper) & [joint.kind != "prismatic" for joint in chain.joints]
 
     def largest_move(result: IKResult) -> float:
         move = result.q - start
-        return float(np.abs(np.where(turning, np.remainder(move + math.pi, _TURN) - math.pi, move)).max())
+        return float(np.abs(np.where(endless, np.remainder(move + math.pi, _TURN) - math.pi, move)).max())
 
     return min([result for result in every if result.solved] or every, key=largest_move)

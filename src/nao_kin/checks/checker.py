@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypedDict
 
 from nao_kin.checks.catalogue import CATALOGUE, require_codes
-from nao_kin.checks.finding import Finding, Report
+from nao_kin.checks.finding import Report, Severity
+from nao_kin.checks.listing import MOST_OF_A_CODE, Listing, bounded, finding_of
+from nao_kin.checks.rules import control_rules as control
 from nao_kin.checks.rules import figure_rules as figures
 from nao_kin.checks.rules import inertia_rules as inertia
 from nao_kin.checks.rules import joint_rules as joints
+from nao_kin.checks.rules import launch_rules as launch
 from nao_kin.checks.rules import mesh_rules as meshes
 from nao_kin.checks.rules import name_rules as names
 from nao_kin.checks.rules import tree_rules as tree
@@ -20,27 +21,25 @@ from nao_kin.checks.rules import vocabulary_rules as vocabulary
 from nao_kin.checks.subject import Subject
 from nao_kin.errors import UnknownNameError, UrdfError
 from nao_kin.robot.known import KNOWN_ROBOTS, find_known, robot_file
-from nao_kin.urdf.document import UNREADABLE, read_bytes
-from nao_kin.urdf.outline import Defect, Outline, describe
+from nao_kin.robot.sources import is_path
+from nao_kin.urdf.document import UNREADABLE, read_bytes, read_urdf
+from nao_kin.urdf.outline import Defect, Outline
 from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.safe_xml import read_tree
-from nao_kin.urdf.structure import STAGES
+from nao_kin.urdf.structure import STAGES, TOLERATED
+from nao_kin.urdf.xacro import expand_xacro, is_xacro_file
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from nao_kin.checks.subject import Rule
     from nao_kin.urdf.resources import MeshRoots
+    from nao_kin.urdf.xacro import Expansion
 
 __all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
 
-MOST_OF_A_CODE: Final = 100
-"""Findings of one code that are listed for one file; nobody reads more, and a hostile file has millions."""
-
-_QUOTED: Final = 4 * 1024 * 1024  # [bytes] of larger files that are no XML no line is quoted
-
 TEXT_RULES: Final[tuple[Rule, ...]] = (
-    vocabulary.version,
+    vocabulary.later_words,
     vocabulary.instructions,
     vocabulary.unknown_words,
     vocabulary.repeated_elements,
@@ -49,23 +48,33 @@ TEXT_RULES: Final[tuple[Rule, ...]] = (
     names.shared_names,
     names.similar_names,
     joints.axes_of_other_length,
+    joints.empty_axes,
     joints.incomplete_limits,
     joints.zero_ranges,
     joints.continuous_with_limits,
+    joints.slips_between_limits,
     joints.limits_in_other_units,
     joints.mimics_of_fixed_joints,
     figures.other_readers_numbers,
     figures.stray_blanks,
+    figures.quaternions_of_other_length,
     figures.colours,
     figures.lengths_in_millimetres,
     figures.angles_in_degrees,
     inertia.incomplete_inertials,
+    inertia.empty_inertials,
     inertia.principal_moments,
     inertia.moving_without_inertia,
     inertia.masses_out_of_scale,
     meshes.shapes,
+    meshes.missing_collisions,
     meshes.mesh_files,
     meshes.mesh_contents,
+    control.controlled_joints,
+    control.transmission_joints,
+    control.gazebo_references,
+    launch.blanks_in_names,
+    launch.colons_in_comments,
 )
 """Rules on the text, for every file that is a URDF at all; each skips what another one reports."""
 
@@ -84,6 +93,15 @@ _BREAKS_THE_TREE: Final = frozenset(
 """Defects after which it says nothing about a file that its links are no tree."""
 
 
+class _Options(TypedDict):
+    """What is the same for every kind of file."""
+
+    packages: MeshRoots
+    thorough: bool
+    select: Collection[str]
+    ignore: Collection[str]
+
+
 def check(
     robot: str | os.PathLike[str],
     *,
@@ -91,15 +109,20 @@ def check(
     thorough: bool = False,
     select: Collection[str] = (),
     ignore: Collection[str] = (),
+    urdf: str | os.PathLike[str] | None = None,
+    arguments: Mapping[str, object] | None = None,
 ) -> Report:
-    """Check a URDF file, by path, or the file of a known robot, by name.
+    """Check a URDF or SRDF file, by path, or the file of a known robot, by name.
 
     Args:
-        robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path.
+        robot: What `nao_kin.load` takes: text that ends in ``.urdf`` or contains a path separator is a path. What ends
+            in ``.srdf`` is MoveIt's file beside a URDF, and in ``.xacro`` one of macros, which is expanded first.
         packages: Package folders by name, or folders that hold packages, for ``package://`` in mesh names.
         thorough: Also open every mesh, however many, and hold Pinocchio against yourdfpy at random postures.
         select: Report these codes only; all if empty.
         ignore: Do not report these.
+        urdf: The URDF that an SRDF is about; looked for beside it if None.
+        arguments: Values of the ``<xacro:arg>`` of a file of macros.
 
     Returns:
         Every finding with its line, sorted. A file that cannot be parsed is a finding too.
@@ -116,8 +139,17 @@ def check(
     except UrdfError as refusal:
         if refusal.code == UNREADABLE:
             raise
-        return _Listing(path, select, ignore).report_refusal(refusal, b"")
+        return Listing(path, select, ignore).report_refusal(refusal, b"")
     folder = Path(path).absolute().parent
+    if is_xacro_file(path):
+        try:
+            expansion = expand_xacro(path, arguments, packages)
+        except UrdfError as refusal:
+            return Listing(path, select, ignore).report_refusal(refusal, b"")
+        options: _Options = {"packages": packages, "thorough": thorough, "select": select, "ignore": ignore}
+        return check_bytes(expansion.data, path, folder=folder, expansion=expansion, **options)
+    if path.endswith(".srdf"):
+        return _check_srdf(data, Listing(path, select, ignore), folder, urdf)
     return check_bytes(data, path, folder=folder, packages=packages, thorough=thorough, select=select, ignore=ignore)
 
 
@@ -130,6 +162,7 @@ def check_bytes(
     thorough: bool = False,
     select: Collection[str] = (),
     ignore: Collection[str] = (),
+    expansion: Expansion | None = None,
 ) -> Report:
     """Check a URDF that is in memory.
 
@@ -141,6 +174,7 @@ def check_bytes(
         thorough: See `check`.
         select: See `check`.
         ignore: See `check`.
+        expansion: The macros that it was expanded from; findings then name their files and lines.
 
     Returns:
         See `check`.
@@ -149,33 +183,30 @@ def check_bytes(
         UnknownNameError: No code of that name.
     """
     require_codes((*select, *ignore))
-    listing = _Listing(path, select, ignore)
+    listing = Listing(path, select, ignore)
     try:
         root = read_tree(data, path)
     except UrdfError as refusal:
         return listing.report_refusal(refusal, data)
     known = KNOWN_ROBOTS.get(root.get("name", ""))
-    subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known)
+    subject = Subject(path, data, Outline(root), Positions.of(data, root), folder, packages, thorough, known, expansion)
     for defects in _examination(subject):
         listing.add(subject, defects)
     return listing.report()
 
 
-def finding_of(subject: Subject, defect: Defect) -> Finding:
-    """A defect with its place in the text and the severity that the catalogue gives it."""
-    place = subject.positions.place(defect)
-    return Finding(
-        path=subject.path,
-        line=place.line,
-        column=place.column,
-        width=place.width,
-        code=defect.code,
-        severity=CATALOGUE[defect.code].severity,
-        element=describe(defect.at),
-        message=defect.message,
-        hint=defect.hint,
-        source=subject.positions.line_text(place.line),
-    )
+def _check_srdf(data: bytes, listing: Listing, folder: Path, urdf: str | os.PathLike[str] | None) -> Report:
+    from nao_kin.checks.srdf import RULES, Semantics, urdf_of
+
+    try:
+        root = read_tree(data, listing.path)
+    except UrdfError as refusal:
+        return listing.report_refusal(refusal, data)
+    subject = Subject(listing.path, data, Outline(root), Positions.of(data, root), folder)
+    semantics = Semantics(root, urdf_of(root, folder) if urdf is None else read_urdf(urdf))
+    for rule in RULES:
+        listing.add(subject, bounded(rule(semantics)))
+    return listing.report()
 
 
 def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
@@ -183,23 +214,31 @@ def _examination(subject: Subject) -> Iterator[Iterable[Defect]]:
     outline = subject.outline
     *early, local, connected = STAGES
     for stage in early:
-        found = [list(_bounded(rule(outline))) for rule in stage]
+        found = [list(bounded(rule(outline))) for rule in stage]
         yield from found
         if any(found):
             return
-    found = [list(_bounded(rule(outline))) for rule in local]
+    found = [list(bounded(rule(outline))) for rule in local]
     yield from found
     sound = not any(found)
+    tolerated = [list(bounded(rule(outline))) for rule in TOLERATED]
+    yield from tolerated
+    # Whoever computes with it is told; the rules on the model would only say it again.
+    sound = sound and not any(_is_error(defect) for defects in tolerated for defect in defects)
     if not any(defect.code in _BREAKS_THE_TREE for defects in found for defect in defects):
-        found = [list(_bounded(rule(outline))) for rule in connected]
-        found.append(list(_bounded(tree.unreachable_links(subject))))
+        found = [list(bounded(rule(outline))) for rule in connected]
+        found.append(list(bounded(tree.unreachable_links(subject))))
         yield from found
         sound = sound and not any(found)
     for rule in TEXT_RULES:
-        yield _bounded(rule(subject))
+        yield bounded(rule(subject))
     if sound:
         for model_rule in _model_rules(subject.thorough):
-            yield _bounded(model_rule(subject))
+            yield bounded(model_rule(subject))
+
+
+def _is_error(defect: Defect) -> bool:
+    return CATALOGUE[defect.code].severity is Severity.error
 
 
 def _model_rules(thorough: bool) -> tuple[Rule, ...]:
@@ -207,6 +246,7 @@ def _model_rules(thorough: bool) -> tuple[Rule, ...]:
     from nao_kin.checks.rules import collision_rules as collision
     from nao_kin.checks.rules import mirror_rules as mirror
     from nao_kin.checks.rules import pose_rules as poses
+    from nao_kin.checks.rules import weight_rules as weight
 
     rules: tuple[Rule, ...] = (
         poses.coupled_ranges,
@@ -216,61 +256,14 @@ def _model_rules(thorough: bool) -> tuple[Rule, ...]:
         mirror.limits_of_twins,
         mirror.inertia_of_twins,
         collision.self_collisions,
+        weight.balance_at_zero,
     )
-    return (*rules, poses.readers_agree) if thorough else rules
-
-
-def _bounded(defects: Iterator[Defect]) -> Iterator[Defect]:
-    """The first defects of a rule, up to one more than is listed of the code that it finds most."""
-    counts: Counter[str] = Counter()
-    for defect in defects:
-        yield defect
-        counts[defect.code] += 1
-        if counts[defect.code] > MOST_OF_A_CODE:
-            return
-
-
-@dataclass
-class _Listing:
-    """The findings of one file as they come in."""
-
-    path: str
-    select: Collection[str]
-    ignore: Collection[str]
-    findings: list[Finding] = field(default_factory=list)
-    counts: Counter[str] = field(default_factory=Counter)
-
-    def add(self, subject: Subject, defects: Iterable[Defect]) -> None:
-        """Takes up the wanted ones, of each code as many as are listed."""
-        for defect in defects:
-            if self._wanted(defect.code):
-                self.counts[defect.code] += 1
-                if self.counts[defect.code] <= MOST_OF_A_CODE:
-                    self.findings.append(finding_of(subject, defect))
-
-    def report(self) -> Report:
-        """All that has come in."""
-        crowded = [(self.path, code) for code, count in self.counts.items() if count > MOST_OF_A_CODE]
-        return Report.of([self.path], self.findings, crowded)
-
-    def report_refusal(self, refusal: UrdfError, data: bytes) -> Report:
-        """The report on a file that never became a tree."""
-        lines = data.decode("utf-8", "replace").split("\n") if refusal.line and len(data) < _QUOTED else []
-        source = lines[refusal.line - 1].rstrip("\r") if refusal.line and refusal.line <= len(lines) else ""
-        code, severity = refusal.code, CATALOGUE[refusal.code].severity
-        if self._wanted(code):
-            self.findings.append(
-                Finding(self.path, refusal.line, 0, 0, code, severity, "file", refusal.reason, refusal.hint, source)
-            )
-        return self.report()
-
-    def _wanted(self, code: str) -> bool:
-        return code not in self.ignore and (not self.select or code in self.select)
+    return (*rules, poses.readers_agree, weight.efforts_against_gravity) if thorough else rules
 
 
 def _path_of(robot: str | os.PathLike[str]) -> str:
     """The path that is meant, by the rule of `nao_kin.load`."""
-    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
+    if isinstance(robot, str) and not is_path(robot):
         try:
             return os.fspath(robot_file(find_known(robot)))
         except UnknownNameError:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from nao_kin.urdf.outline import Defect, Outline
     from nao_kin.urdf.positions import Positions
     from nao_kin.urdf.resources import MeshRoots
+    from nao_kin.urdf.xacro import Expansion
 
     Rule: TypeAlias = Callable[["Subject"], Iterator[Defect]]
 
@@ -42,6 +43,7 @@ class Subject:
         packages: Mesh roots, see `nao_kin.urdf.resolve_mesh`.
         thorough: Whether rules that take seconds are wanted.
         known: What is known about the robot beyond the file, if anything.
+        expansion: The macros that the text was expanded from, if it was.
     """
 
     path: str
@@ -52,6 +54,7 @@ class Subject:
     packages: MeshRoots = ()
     thorough: bool = False
     known: KnownRobot | None = None
+    expansion: Expansion | None = None
 
     @cached_property
     def document(self) -> UrdfDocument:

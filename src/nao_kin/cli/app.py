@@ -9,10 +9,12 @@ import importlib
 import io
 import os
 import sys
+import warnings
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import typer
 
+from nao_kin.cli.shared_options import shared_options
 from nao_kin.errors import NaoKinError
 
 if TYPE_CHECKING:
@@ -30,6 +32,7 @@ COMMANDS: Final[dict[str, dict[str, Any]]] = {
     "ik": {"short_help": "Joints that bring a tip somewhere."},
     "compare": {"short_help": "A table against a model, or any two chains."},
     "check": {"short_help": "Defects of URDF files, with lines; for CI."},
+    "diff": {"short_help": "What differs between two robots, and how far tips move."},
     "explain": {"short_help": "What a code of check means."},
     "ledger": {"short_help": "Every printed formula of the documents, judged."},
     "workspace": {"short_help": "A map of where a tip can be."},
@@ -50,7 +53,9 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     """The command line with these commands; only their modules are imported."""
     app = typer.Typer(
         name="nao-kin",
-        help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages.",
+        help="Robot kinematics with the model as the truth: look at robots, solve, compare tables, write pages. "
+        "Where a robot is a file of xacro, NAME:=VALUE gives its arguments and --package NAME=DIR its packages; "
+        '--tool "x y z roll pitch yaw" [m, rad] puts a tool on the tip of fk, ik, compare, trajectory and workspace.',
         no_args_is_help=True,
         invoke_without_command=True,
         add_completion=False,
@@ -80,11 +85,14 @@ def main() -> NoReturn:
     """Runs the command line and exits with its status."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal that has no arrow gets a question mark
+    warnings.formatwarning = _plain  # type: ignore[assignment]
     # typer reads every parameter of every command before it runs one, which takes longer than most of them do.
     asked = [word for word in sys.argv[1:2] if word in COMMANDS]
     try:
-        status = application(asked or COMMANDS)(standalone_mode=True)
-    except NaoKinError as error:
+        given = shared_options(sys.argv[1:])
+        with given.in_force():
+            status = application(asked or COMMANDS)(given.words, standalone_mode=True)
+    except (NaoKinError, typer.BadParameter) as error:  # typer itself shows those of its own parameters
         typer.echo(f"nao-kin: {error}", err=True)
         sys.exit(2)
     except OSError as error:
@@ -93,6 +101,15 @@ def main() -> NoReturn:
         typer.echo(f"nao-kin: {error.filename or 'file'}: {error.strerror or error}.", err=True)
         sys.exit(2)
     sys.exit(status)
+
+
+def _plain(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> str:
+    """A warning about a file in our words; others as Python prints them."""
+    from nao_kin.urdf import UrdfWarning
+
+    if issubclass(category, UrdfWarning):
+        return f"nao-kin: {message}\n"
+    return f"{filename}:{lineno}: {category.__name__}: {message}\n"
 
 
 def _reader_has_left() -> NoReturn:

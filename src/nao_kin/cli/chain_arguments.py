@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from nao_kin.cli.shared_options import with_given_tool
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -76,14 +78,16 @@ def chain_of_robot(robot: Robot, name: str | None, base: str | None, tip: str | 
     if name is not None:
         if base is not None or tip is not None:
             raise typer.BadParameter("--chain already says base and tip; give either it or --base and --tip.")
-        return robot.chain(name)
+        return with_given_tool(robot.chain(name))
     if tip is not None:
-        return robot.chain(base or robot.root, tip)
+        return with_given_tool(robot.chain(base or robot.root, tip))
     if base is not None:
         raise typer.BadParameter("--base needs --tip.")
     if not robot.chain_frames:
-        raise typer.BadParameter(f"{robot.name} has no named chains: say which with --base and --tip.")
-    return robot.chain(next(iter(robot.chain_frames)))
+        names = ", ".join(robot.chain_names[:8]) or "none"
+        hint = f"say which with --base and --tip, or --chain ({names})"
+        raise typer.BadParameter(f"{robot.name} has no named chains: {hint}.")
+    return with_given_tool(robot.chain(next(iter(robot.chain_frames))))
 
 
 def parse_values(values: Sequence[str], degrees: bool, chain: Chain) -> list[float]:

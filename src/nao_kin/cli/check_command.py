@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["check"]
 
 
+# A file of macros by itself is no robot; what ends in .urdf.xacro is meant as one.
+_SUFFIXES = (".urdf", ".srdf", ".urdf.xacro")
+
+
 class CheckFormat(StrEnum):
     """How findings are printed."""
 
@@ -31,7 +35,7 @@ class CheckFormat(StrEnum):
     github = "github"
 
 
-_FILES_HELP = "URDF files, directories (every .urdf below them), globs, names of known robots; - is standard input."
+_FILES_HELP = "URDF, xacro, SRDF files, directories, globs, known robots; NAME:=VALUE for xacro; - is standard input."
 
 
 def check(
@@ -43,18 +47,21 @@ def check(
     thorough: Annotated[bool, typer.Option("--thorough", help="Open every mesh; hold two readers together.")] = False,
     package: Annotated[list[str] | None, typer.Option(help="Where package://NAME is.", metavar="NAME=DIR")] = None,
     dh: Annotated[str | None, typer.Option(help="A DH table (TOML) to hold the model against.")] = None,
+    urdf: Annotated[str | None, typer.Option(help="The URDF that an SRDF is about.", metavar="FILE")] = None,
     against: Annotated[str | None, typer.Option(help="Another URDF to hold the model against.")] = None,
     baseline: Annotated[Path | None, typer.Option(help="Do not report what this file knows already.")] = None,
     update_baseline: Annotated[bool, typer.Option("--update-baseline", help="Record the findings in it.")] = False,
+    fix: Annotated[bool, typer.Option("--fix", help="Show repairs that cannot change kinematics, as a diff.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="With --fix: write them.")] = False,
+    swap_limits: Annotated[bool, typer.Option("--swap-limits", help="With --fix: exchange such limits.")] = False,
 ) -> None:
     """Check URDF files. Exit status 0: clean; 1: findings; 2: wrong usage or unreadable input."""
-    from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
     from nao_kin.checks.catalogue import require_codes
-    from nao_kin.checks.finding import Report, Severity
-    from nao_kin.errors import UrdfError
 
     if update_baseline and baseline is None:
         raise typer.BadParameter("--update-baseline needs --baseline FILE.")
+    if (write or swap_limits) and not fix:
+        raise typer.BadParameter("--write and --swap-limits go with --fix.")
     selected, ignored = _codes(select), _codes(ignore)
     require_codes((*selected, *ignored))
     options: _Options = {
@@ -64,25 +71,49 @@ def check(
         "ignore": ignored,
     }
     paths = _paths(files)
+    if fix:
+        from nao_kin.cli.fixing import fix_files
+
+        raise typer.Exit(fix_files(paths, write=write, swap_limits=swap_limits))
     if (dh or against) and (len(paths) != 1 or paths == ["-"]):
         raise typer.BadParameter("--dh and --against are for one file.")
-    known = read_baseline(baseline) if baseline is not None and not update_baseline else None
+    found, unreadable = _all_checked(paths, options, urdf, (dh, against))
+    raise typer.Exit(_reported(found, unreadable, format, strict, (baseline, update_baseline)))
+
+
+def _all_checked(
+    paths: list[str], options: _Options, urdf: str | None, held: tuple[str | None, str | None]
+) -> tuple[Report, bool]:
+    """The findings of all files, and whether one could not be read at all."""
+    from nao_kin.checks.finding import Report
+    from nao_kin.errors import UrdfError
+
     reports, unreadable = [], False
     for path in paths:
         try:
-            reports.append(_checked(path, options, dh, against))
+            reports.append(_checked(path, options, urdf, held))
         except UrdfError as error:
             typer.echo(f"nao-kin: {error}", err=True)
             unreadable = True
-    found = Report.joined(reports)
-    if baseline is not None and update_baseline:
-        write_baseline(found, baseline)
-        typer.echo(f"nao-kin: {baseline} now knows {len(found)} findings.", err=True)
-        raise typer.Exit(2 if unreadable else 0)
-    found = found if known is None else without_known(found, known)
+    return Report.joined(reports), unreadable
+
+
+def _reported(
+    found: Report, unreadable: bool, format: CheckFormat, strict: bool, baseline: tuple[Path | None, bool]
+) -> int:
+    """Prints the findings, or what is new of them, or records them; the exit status."""
+    from nao_kin.checks.baseline import read_baseline, without_known, write_baseline
+    from nao_kin.checks.finding import Severity
+
+    path, update = baseline
+    if path is not None and update:
+        write_baseline(found, path)
+        typer.echo(f"nao-kin: {path} now knows {len(found)} findings.", err=True)
+        return 2 if unreadable else 0
+    found = found if path is None else without_known(found, read_baseline(path))
     threshold = Severity.warning if strict else Severity.error
     _print(found, format, threshold)
-    raise typer.Exit(2 if unreadable else 1 if found.at_or_above(threshold) else 0)
+    return 2 if unreadable else 1 if found.at_or_above(threshold) else 0
 
 
 class _Options(TypedDict):
@@ -94,16 +125,17 @@ class _Options(TypedDict):
     ignore: list[str]
 
 
-def _checked(path: str, options: _Options, table: str | None, other: str | None) -> Report:
+def _checked(path: str, options: _Options, urdf: str | None, held: tuple[str | None, str | None]) -> Report:
     from nao_kin.checks.checker import check as check_file
     from nao_kin.checks.checker import check_bytes
     from nao_kin.checks.finding import Report
+    from nao_kin.robot.sources import given_arguments
     from nao_kin.urdf import LIMITS
 
     if path == "-":
         data = sys.stdin.buffer.read(LIMITS.file_bytes + 1)
         return check_bytes(data, "<stdin>", **options)
-    found = check_file(path, **options)
+    found, (table, other) = check_file(path, urdf=urdf, arguments=given_arguments(), **options), held
     if (table or other) and found.errors:
         typer.echo(f"nao-kin: {path} was not compared, because of its errors.", err=True)
     elif table or other:
@@ -166,9 +198,9 @@ def _paths(given: list[str]) -> list[str]:
 
 def _expanded(word: str) -> Iterator[str]:
     if os.path.isdir(word):  # noqa: PTH112 - Path raises for long names
-        found = sorted(map(str, Path(word).rglob("*.urdf")))
+        found = sorted(str(path) for path in Path(word).rglob("*") if path.name.endswith(_SUFFIXES))
         if not found:
-            raise typer.BadParameter(f"{word}: no .urdf file in this directory or below.")
+            raise typer.BadParameter(f"{word}: no .urdf, .urdf.xacro or .srdf file in this directory or below.")
         yield from found
     elif any(sign in word for sign in "*?[") and not os.path.lexists(word):
         found = sorted(path for path in glob.glob(word, recursive=True) if os.path.isfile(path))  # noqa: PTH113, PTH207

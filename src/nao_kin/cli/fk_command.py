@@ -85,7 +85,7 @@ def _documents(chain: Chain) -> list[Chain]:
     from nao_kin.documents.chains import document_chain, documents_of
     from nao_kin.robot.urdf_chain import UrdfChain
 
-    if not isinstance(chain, UrdfChain):
+    if not isinstance(chain, UrdfChain) or not chain.is_bare:
         return []
     return [document_chain(name) for name in documents_of(chain.robot.name, chain.base, chain.tip)]
 

@@ -99,7 +99,7 @@ def _target(
     if posture:
         if rpy is not None:
             raise typer.BadParameter("--rpy goes with --xyz; a posture has its own orientation.")
-        return robot.pose(parse_posture(posture, degrees, robot), path.tip, path.base)
+        return path.pose(path.q_of(parse_posture(posture, degrees, robot)))
     if rpy is None:
         return np.array(xyz)
     return from_xyz_rpy(xyz or (0, 0, 0), np.radians(rpy) if degrees else np.array(rpy))

@@ -12,7 +12,7 @@ import pinocchio as pin
 from nao_kin.arrays import frozen, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.se3 import from_xyz_rpy
-from nao_kin.urdf.elements import Box, Cylinder, Sphere
+from nao_kin.urdf.elements import Box, Capsule, Cylinder, Sphere
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -81,6 +81,8 @@ def coal_shape(shape: Shape) -> Any:
             return coal.Box(np.array(size))
         case Cylinder(radius, length) if radius > 0.0 and length > 0.0:
             return coal.Cylinder(radius, length)
+        case Capsule(radius, length) if radius > 0.0:
+            return coal.Capsule(radius, length) if length > 0.0 else coal.Sphere(radius)
         case Sphere(radius) if radius > 0.0:
             return coal.Sphere(radius)
     return None
@@ -98,8 +100,8 @@ def link_bodies(robot: Robot) -> tuple[tuple[CollisionBody, ...], tuple[str, ...
             shape = coal_shape(solid.shape)
             if shape is None:
                 kind = type(solid.shape).__name__
-                notes.append(f"Link {link.name}, line {solid.line}: its {kind} is not watched; boxes, cylinders and")
-                notes[-1] += " spheres with a size are."
+                notes.append(f"Link {link.name}, line {solid.line}: its {kind} is not watched; boxes, cylinders,")
+                notes[-1] += " capsules and spheres with a size are."
                 continue
             placement = frame.placement * from_xyz_rpy(solid.origin.xyz, solid.origin.rpy)
             shape.computeLocalAABB()

@@ -152,6 +152,22 @@ class DHChain(FlatChain):
         heading = {key: getattr(self, key) for key in ("name", "convention", "base_name", "tip_name")}
         return format_table_file(heading, self.base.homogeneous, self.tool.homogeneous, rows)
 
+    def with_tool(self, tool: PoseLike) -> DHChain:
+        """The same table with T_tip_tool after its own tool: poses are those of the tool's frame.
+
+        Raises:
+            InvalidInputError: It is no pose.
+        """
+        return replace(self, tool=self.tool * as_pose(tool, "tool"), tip_name=f"tool on {self.tip_name}")
+
+    def with_base(self, mount: PoseLike) -> DHChain:
+        """The same table with T_mount_base before its own base: poses are given in the frame that is wanted.
+
+        Raises:
+            InvalidInputError: It is no pose.
+        """
+        return replace(self, base=as_pose(mount, "base") * self.base, base_name=f"mount of {self.base_name}")
+
     def to_urdf(self) -> str:
         """The table as a URDF file's text that `nao_kin.load` reads: the same chain from `base_name` to `tip_name`.
 

@@ -129,6 +129,7 @@ class Run:
         trace: The iterates, where they were asked for.
         start: The caller's start (n,), where jumps are of interest.
         jump: Largest move of a joint from there [rad or m].
+        singular: Whether the branch stands for others, at a double root or on a continuum.
     """
 
     q: Floats
@@ -141,6 +142,7 @@ class Run:
     trace: Trace | None = None
     start: Floats | None = None
     jump: float = math.inf
+    singular: bool = False
 
 
 @dataclass(eq=False, slots=True)

@@ -65,7 +65,8 @@ def stated(joint: UrdfJoint) -> ChainJoint:
         raise ValueError(joint.name)  # paths hold moving joints only
     limit = joint.limit
     speed = math.inf if limit is None or limit.velocity is None else limit.velocity
-    if joint.kind == "continuous" or limit is None or limit.lower is None or limit.upper is None:
+    # A chain with a joint that has its limits swapped is refused.
+    if joint.kind == "continuous" or limit is None or limit.lower is None or limit.upper is None or limit.swapped:
         return ChainJoint(joint.name, joint.kind, max_velocity=speed)
     return ChainJoint(joint.name, joint.kind, limit.lower, limit.upper, speed)
 

@@ -39,7 +39,7 @@ class KnownRobot:
         name: The name.
         title: What it is, for lists.
         file: File name in our own folder, or the path below the robots folder of example-robot-data.
-        source: Which of the two.
+        source: Which of the two, or that it is one of robot_descriptions.py, by its full path.
         chains: Chain name to (base frame, tip frame); the first one is the robot's main chain.
         effectors: Frames that the robot's documentation calls effectors.
         coupled_limits: Ranges that depend on another joint.
@@ -48,7 +48,7 @@ class KnownRobot:
     name: str
     title: str
     file: str
-    source: Literal["bundled", "example-robot-data"]
+    source: Literal["bundled", "example-robot-data", "robot_descriptions"]
     chains: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     effectors: tuple[str, ...] = ()
     coupled_limits: tuple[CoupledLimit, ...] = ()

@@ -5,10 +5,11 @@ Pinocchio's own configuration vector stays behind it: outside, a robot has postu
 
 from __future__ import annotations
 
-import os
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,46 +18,55 @@ import pinocchio as pin
 from nao_kin.arrays import finite
 from nao_kin.chain import ChainJoint, LimitRule, OutsideLimit, into_limits, limit_texts
 from nao_kin.errors import InvalidInputError, UnknownNameError
+from nao_kin.robot.chain_names import end_chains, srdf_chains
 from nao_kin.robot.couplings import Coupling, couplings_of, driven_joints, stated
-from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share, find_known, robot_file
+from nao_kin.robot.known import CoupledLimit, KnownRobot, example_robot_data_share
 from nao_kin.robot.motors import Motors
 from nao_kin.robot.pinocchio_layout import PinocchioLayout
+from nao_kin.robot.sources import read_source, tell
+from nao_kin.robot.tool import as_tool
 from nao_kin.robot.tree import Tree
 from nao_kin.robot.urdf_chain import UrdfChain
 from nao_kin.table import Column, Table
-from nao_kin.urdf import UrdfDocument, read_urdf
+from nao_kin.urdf.writer import UNLIMITED
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    import os
 
+    from nao_kin.robot.tool import ToolLike
+    from nao_kin.urdf import UrdfDocument
     from nao_kin.urdf.elements import UrdfJoint
+    from nao_kin.urdf.packages import PackageRoots
 
 __all__ = ["Robot", "load"]
 
 
-def load(robot: str | os.PathLike[str]) -> Robot:
-    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF file.
+def load(
+    robot: str | os.PathLike[str], *, arguments: Mapping[str, object] | None = None, packages: PackageRoots = ()
+) -> Robot:
+    """A robot by known name (`nao_kin.robot_names`) or by the path of a URDF, xacro or MJCF file.
 
     Args:
-        robot: Text that ends in ``.urdf`` or contains a path separator is a path; a `pathlib.Path` always is.
+        robot: Text that ends in ``.urdf`` or ``.xacro`` or contains a path separator is a path; a `pathlib.Path` is.
+        arguments: Values of the ``<xacro:arg>`` of a file of macros, as ``{"name": "ur5e"}``.
+        packages: Package folders by name, or folders that hold packages, for ``$(find NAME)`` and ``package://``.
 
     Returns:
         The robot, with named chains and coupled limits if it is a known one.
 
     Raises:
         UnknownNameError: No robot of that name; carries near matches.
-        MissingExtraError: The robot's files come with an optional extra.
+        MissingExtraError: The robot's files come with an optional extra, or it is one of macros and ``xacro`` is not
+            installed.
+        InvalidInputError: Arguments for a file that takes none.
         UrdfError: The file is unreadable, hostile or malformed; carries the line and the reason.
+
+    Warns:
+        UrdfWarning: The file has mistakes that every reader gets past, as limits with their ends swapped; with lines.
     """
-    if isinstance(robot, str) and not robot.endswith(".urdf") and os.sep not in robot:
-        try:
-            known = find_known(robot)
-        except UnknownNameError:
-            if os.path.isfile(robot):  # noqa: PTH113 - false, where Path would raise, for a name too long
-                return Robot.from_document(read_urdf(robot))
-            raise
-        return Robot.from_document(read_urdf(robot_file(known)), known)
-    return Robot.from_document(read_urdf(robot))
+    document, known = read_source(robot, arguments, packages)
+    tell(document)
+    return Robot.from_document(document, known, packages)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +92,18 @@ class Robot:
     mesh_roots: tuple[Path, ...] = ()
 
     @classmethod
-    def from_document(cls, document: UrdfDocument, known: KnownRobot | None = None) -> Robot:
-        """A robot from a parsed document, with what is known about it beyond that if it is a known one."""
+    def from_document(
+        cls, document: UrdfDocument, known: KnownRobot | None = None, packages: PackageRoots = ()
+    ) -> Robot:
+        """A robot from a parsed document, with what is known about it beyond that if it is a known one.
+
+        Args:
+            document: The file's content.
+            known: What is known about the robot, if it is one of the known.
+            packages: Package folders by name, or folders that hold packages, for the names of meshes.
+        """
         roots = [] if document.directory is None else [document.directory]
+        roots += map(Path, packages.values() if isinstance(packages, Mapping) else packages)
         if known is None:
             return cls(name=document.name, document=document, mesh_roots=tuple(roots))
         if known.source == "example-robot-data" and (share := example_robot_data_share()) is not None:
@@ -101,7 +120,11 @@ class Robot:
     @cached_property
     def model(self) -> pin.Model:
         """The `pinocchio.Model`, as an escape hatch; its joint order and vectors are Pinocchio's own."""
-        return pin.buildModelFromXML(self.document.to_xml())
+        model = pin.buildModelFromXML(self.document.to_xml())
+        for most in (model.velocityLimit, model.upperEffortLimit):  # the largest number stands for "no limit" there
+            most[most >= UNLIMITED] = math.inf
+        model.lowerEffortLimit = -model.upperEffortLimit
+        return model
 
     @cached_property
     def moving_joints(self) -> tuple[UrdfJoint, ...]:
@@ -122,6 +145,15 @@ class Robot:
     def root(self) -> str:
         """The frame that every other one hangs from."""
         return self.document.root
+
+    @property
+    def chain_names(self) -> tuple[str, ...]:
+        """Names that `chain` takes: those of a known robot, the groups of an SRDF beside the file, the end links."""
+        return (*self.chain_frames, *(name for name in self._other_chains if name not in self.chain_frames))
+
+    @cached_property
+    def _other_chains(self) -> dict[str, tuple[str, str]]:
+        return {**end_chains(self.document), **srdf_chains(self.document)}
 
     @cached_property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -242,20 +274,29 @@ class Robot:
         pin.framesForwardKinematics(self.model, data, q)
         return {name: pin.SE3(data.oMf[i]) for name, i in self._frame_ids.items()}
 
-    def chain(self, base: str, tip: str | None = None) -> UrdfChain:
-        """The chain from a base frame to a tip frame, or the named chain: ``robot.chain("left_arm")``.
+    def chain(self, base: str, tip: str | None = None, *, tool: ToolLike | None = None) -> UrdfChain:
+        """The chain from a base frame to a tip frame, or a named one of `chain_names`: ``robot.chain("left_arm")``.
+
+        Args:
+            base: A frame, or the name of a chain where no tip is given.
+            tip: A frame.
+            tool: What sits on the tip, as `UrdfChain.with_tool` takes it: ``[0, 0, 0.1034, 0, 0, 0]``.
 
         Raises:
+            InvalidInputError: The tool is none.
             UnknownNameError: Unknown frame or chain; carries near matches.
             NoPathError: No moving joint lies between the two frames.
         """
         if tip is None:
-            if base not in self.chain_frames:
-                raise UnknownNameError("chain", base, self.chain_frames, self.name)
-            return UrdfChain(self, *self.chain_frames[base], label=base)
-        self._require_frames(base, tip)
-        named = (name for name, frames in self.chain_frames.items() if frames == (base, tip))
-        return UrdfChain(self, base, tip, label=next(named, ""))
+            frames = self.chain_frames.get(base) or self._other_chains.get(base)
+            if frames is None:
+                raise UnknownNameError("chain", base, self.chain_frames or self.chain_names, self.name)
+            label = base
+        else:
+            frames = base, tip
+            label = next((name for name, known in self.chain_frames.items() if known == frames), "")
+        self._require_frames(*frames)
+        return UrdfChain(self, *frames, label, tool=None if tool is None else as_tool(tool))
 
     def tree(self, base: str, tips: Sequence[str]) -> Tree:
         """The chains from one base frame to several tip frames as one: joints that they share are the same columns.

@@ -7,6 +7,7 @@ other.
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,10 +22,11 @@ from nao_kin.chain import (
     configuration,
     limit_table,
 )
-from nao_kin.errors import InvalidInputError, NoPathError
+from nao_kin.errors import InvalidInputError, NoPathError, UrdfError
 from nao_kin.kernels.joint_path import JointPath, joint_path
 from nao_kin.robot.couplings import spread_and_shift
 from nao_kin.robot.path import PathStep, walk
+from nao_kin.robot.tool import as_tool
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.robot.robot import Robot
+    from nao_kin.robot.tool import ToolLike
 
 __all__ = ["UrdfChain"]
 
@@ -55,11 +58,26 @@ class UrdfChain(FlatChain):
     adds to its leader's column; when its leader is not on the path it stands for itself.
     """
 
-    def __init__(self, robot: Robot, base: str, tip: str, label: str = "") -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        base: str,
+        tip: str,
+        label: str = "",
+        *,
+        tool: pin.SE3 | None = None,
+        mount: pin.SE3 | None = None,
+    ) -> None:
         self._robot, self._base, self._tip, self._label = robot, base, tip, label
+        self._tool, self._mount = tool, mount
         steps, self._T_joint_tip = walk(robot, base, tip)
         if not steps:
             raise NoPathError(base, tip, robot.name)
+        if mount is not None:
+            steps = (replace(steps[0], placement=mount * steps[0].placement), *steps[1:])
+        if tool is not None:
+            self._T_joint_tip = self._T_joint_tip * tool
+        _refuse_swapped_limits(robot, steps)
         own = [step.joint.name for step in steps if step.coupling.leader == step.joint.name]
         self._steps, self._joints = steps, tuple(robot.driven_joints[name] for name in own)
         self._limit_rules = tuple(rule for rule in robot.limit_rules if rule.joint in own and rule.by in own)
@@ -70,6 +88,48 @@ class UrdfChain(FlatChain):
         spread, self._shift = spread_and_shift([step.coupling for step in steps], own)
         self._spread: Floats | None = None if len(own) == len(steps) else spread
 
+    def with_tool(self, tool: ToolLike) -> UrdfChain:
+        """The same chain with a tool on its tip: poses and Jacobians are those of the tool's frame.
+
+        Args:
+            tool: T_tip_tool: a pose, x y z [m] with or without roll pitch yaw [rad], or a DH row; see `as_tool`. A tool
+                that is there already is what it sits on.
+
+        Raises:
+            InvalidInputError: It is none of these.
+        """
+        return self._having(self.tool * as_tool(tool), self._mount)
+
+    def with_base(self, mount: ToolLike) -> UrdfChain:
+        """The same chain with its poses given in another frame, such as the table that the robot is screwed to.
+
+        Args:
+            mount: T_mount_base, in any of the ways of `with_tool`: where the base is in the frame that is wanted.
+
+        Raises:
+            InvalidInputError: It is none of these.
+        """
+        T_mount_base = as_tool(mount, "base")
+        return self._having(self._tool, T_mount_base if self._mount is None else T_mount_base * self._mount)
+
+    def _having(self, tool: pin.SE3 | None, mount: pin.SE3 | None) -> UrdfChain:
+        return UrdfChain(self._robot, self._base, self._tip, self._label, tool=tool, mount=mount)
+
+    @property
+    def tool(self) -> pin.SE3:
+        """T_tip_tool from the tip's link to the frame whose pose is given; the identity without a tool."""
+        return pin.SE3.Identity() if self._tool is None else pin.SE3(self._tool)
+
+    @property
+    def mount(self) -> pin.SE3:
+        """T_mount_base, where the base's link is in the frame that poses are given in; the identity without a mount."""
+        return pin.SE3.Identity() if self._mount is None else pin.SE3(self._mount)
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether it has neither a tool nor another base than a link."""
+        return self._tool is None and self._mount is None
+
     @property
     def robot(self) -> Robot:
         """The robot it belongs to."""
@@ -77,28 +137,29 @@ class UrdfChain(FlatChain):
 
     @property
     def base(self) -> str:
-        """Frame in which poses are given."""
+        """The link that it starts at, in whose frame poses are given unless `with_base` says another."""
         return self._base
 
     @property
     def tip(self) -> str:
-        """Frame whose pose is given."""
+        """The link that it ends at, whose pose is given unless a tool sits on it."""
         return self._tip
 
     @property
     def name(self) -> str:
         """Robot and chain, for messages."""
-        return f"{self._robot.name} {self._label or f'{self._base}→{self._tip}'}"
+        tool = "" if self._tool is None else " with tool"
+        return f"{self._robot.name} {self._label or f'{self._base}→{self._tip}'}{tool}"
 
     @property
     def base_name(self) -> str:
         """Name of the base frame."""
-        return self.base
+        return self.base if self._mount is None else f"mount of {self.base}"
 
     @property
     def tip_name(self) -> str:
         """Name of the tip frame."""
-        return self.tip
+        return self.tip if self._tool is None else f"tool on {self.tip}"
 
     @property
     def joints(self) -> tuple[ChainJoint, ...]:
@@ -184,13 +245,27 @@ class UrdfChain(FlatChain):
         return values if self._spread is None else self._spread @ values + self._shift
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return UrdfChain, (self._robot, self._base, self._tip, self._label)
+        return _restored, (self._robot, self._base, self._tip, self._label, self._tool, self._mount)
 
     def __repr__(self) -> str:
         return f"<UrdfChain {self.name}: {', '.join(self.joint_names)}>"
 
     def _repr_html_(self) -> str:
         return limit_table(self, f"{self.name}: {self.base_name} → {self.tip_name}")._repr_html_()
+
+
+def _restored(robot: Robot, base: str, tip: str, label: str, tool: pin.SE3 | None, mount: pin.SE3 | None) -> UrdfChain:
+    return UrdfChain(robot, base, tip, label, tool=tool, mount=mount)
+
+
+def _refuse_swapped_limits(robot: Robot, steps: Sequence[PathStep]) -> None:
+    """A joint without a single allowed value is nobody's concern until a chain moves it."""
+    for step in steps:
+        limit = step.joint.limit
+        if limit is not None and limit.swapped and step.joint.kind != "continuous":
+            reason = f"The lower limit {limit.lower:g} of the joint {step.joint.name!r} is above its upper limit "
+            reason += f"{limit.upper:g}, so that no value is allowed on a chain with it."
+            raise UrdfError(robot.document.path, limit.line, reason, "Are they swapped?", code="inverted-limit")
 
 
 def _serial_model(steps: Sequence[PathStep], T_joint_tip: pin.SE3) -> tuple[pin.Model, list[int], int]:

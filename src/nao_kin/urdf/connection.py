@@ -20,6 +20,7 @@ __all__ = [
     "link_references",
     "mimic_cycles",
     "mimic_references",
+    "near_hint",
     "no_links",
     "rings",
     "several_roots",
@@ -43,7 +44,7 @@ def link_references(outline: Outline) -> Iterator[Defect]:
                 yield Defect(f"no-{end}", element, message, f'Write <{end} link="..."/>.')
             elif name not in outline.link_by_name:
                 message = f"The {end} {shown(name)} of the {where} is not a link of this file."
-                yield Defect(f"unknown-{end}", element, message, _near_hint(name, outline.link_by_name), "link")
+                yield Defect(f"unknown-{end}", element, message, near_hint(name, outline.link_by_name), "link")
         parent = link_named(joint, "parent")
         if parent and parent == link_named(joint, "child"):
             message = f"The {where} connects the link {shown(parent)} with itself."
@@ -64,7 +65,7 @@ def mimic_references(outline: Outline) -> Iterator[Defect]:
             yield Defect("self-mimic", mimic, f"The {where} mimics itself.", "Name another joint.", "joint")
         elif leader not in outline.joint_by_name:
             message = f"The {where} mimics {shown(leader)}, which is not a joint of this file."
-            yield Defect("unknown-leader", mimic, message, _near_hint(leader, outline.joint_by_name), "joint")
+            yield Defect("unknown-leader", mimic, message, near_hint(leader, outline.joint_by_name), "joint")
         elif outline.joint_by_name[leader].get("type") not in MOVING:
             message = f"The {where} mimics {shown(leader)}, which does not move."
             yield Defect("fixed-leader", mimic, message, "Name a joint that moves, or make this one fixed.", "joint")
@@ -156,7 +157,8 @@ def _listed(names: list[str]) -> str:
     return ", ".join(texts) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
 
 
-def _near_hint(name: str, known: Iterable[str]) -> str:
+def near_hint(name: str, known: Iterable[str]) -> str:
+    """Which known names a name may be meant to be, as a question; "" where none is near."""
     if len(name) > _COMPARED:
         return ""
     # The names with most pairs of letters in common first: to compare with all takes seconds in a hostile file.

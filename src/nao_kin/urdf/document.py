@@ -16,16 +16,20 @@ from nao_kin.urdf.positions import Positions
 from nao_kin.urdf.reader import read_joints, read_links
 from nao_kin.urdf.safe_xml import read_tree
 from nao_kin.urdf.size_limits import LIMITS
-from nao_kin.urdf.structure import first_defect
+from nao_kin.urdf.structure import first_defect, tolerated_defects
 from nao_kin.urdf.writer import kinematic_xml
 
 if TYPE_CHECKING:
     from nao_kin.urdf.elements import UrdfJoint, UrdfLink
 
-__all__ = ["UNREADABLE", "UrdfDocument", "document_of", "parse_urdf", "read_bytes", "read_urdf"]
+__all__ = ["UNREADABLE", "UrdfDocument", "UrdfWarning", "document_of", "parse_urdf", "read_bytes", "read_urdf"]
 
 UNREADABLE = "unreadable"
 """Code of the refusals that say nothing about a file's content, because there is none to read."""
+
+
+class UrdfWarning(UserWarning):
+    """A URDF file was read though something in it is wrong: all of it, with lines, in one warning a file."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class UrdfDocument:
         joints: Joints in file order.
         root: Name of the one link that is no joint's child.
         directory: Folder of the file, for its meshes; None for a document that was not read from a file.
+        tolerated: What is wrong with it though it was read, a sentence each, with the line.
     """
 
     path: str
@@ -49,6 +54,7 @@ class UrdfDocument:
     joints: tuple[UrdfJoint, ...] = field(repr=False)
     root: str
     directory: Path | None = None
+    tolerated: tuple[str, ...] = ()
 
     @cached_property
     def _link_by_name(self) -> dict[str, UrdfLink]:
@@ -125,7 +131,9 @@ def parse_urdf(data: bytes, path: str = "<urdf>") -> UrdfDocument:
     if defect is not None:
         line = Positions.of(data, tree).place(defect).line
         raise UrdfError(path, line, defect.message, defect.hint, code=defect.code)
-    return document_of(outline, data, path)
+    positions, tolerated = Positions.of(data, tree), tolerated_defects(outline)
+    said = tuple(f"line {positions.place(defect).line}: {defect.message}" for defect in tolerated)
+    return replace(document_of(outline, data, path), tolerated=said)
 
 
 def document_of(outline: Outline, data: bytes, path: str) -> UrdfDocument:

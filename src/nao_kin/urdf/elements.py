@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 
 __all__ = [
     "Box",
+    "Capsule",
     "Cylinder",
     "Inertial",
     "JointKind",
@@ -32,7 +33,10 @@ Colour: TypeAlias = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Placement of an element in its parent: translation [m] and fixed-axis roll, pitch, yaw [rad] (Rz Ry Rx)."""
+    """Placement of an element in its parent: translation [m] and fixed-axis roll, pitch, yaw [rad] (Rz Ry Rx).
+
+    A quaternion of format 1.1 has become the three angles.
+    """
 
     xyz: Triple = (0.0, 0.0, 0.0)
     rpy: Triple = (0.0, 0.0, 0.0)
@@ -61,6 +65,14 @@ class Sphere:
 
 
 @dataclass(frozen=True, slots=True)
+class Capsule:
+    """A cylinder with a half ball on each end: radius and the cylinder's own length [m], axis along z, centred."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
 class MeshFile:
     """A mesh named by the file, unresolved and untrusted; scale per axis."""
 
@@ -70,12 +82,12 @@ class MeshFile:
 
 @dataclass(frozen=True, slots=True)
 class OtherShape:
-    """A shape that URDF does not define, as a capsule: known to be there, not known in size."""
+    """A shape that this version of URDF does not define: known to be there, not known in size."""
 
     tag: str
 
 
-Shape: TypeAlias = Box | Cylinder | Sphere | MeshFile | OtherShape
+Shape: TypeAlias = Box | Cylinder | Capsule | Sphere | MeshFile | OtherShape
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,13 +123,32 @@ class UrdfLink:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Range [rad or m], None where the file gives none, greatest speed [rad/s or m/s] and effort [N m or N]."""
+    """Range [rad or m], None where the file gives none, and the greatest magnitudes that the joint may reach.
+
+    Attributes:
+        lower: As in the file.
+        upper: As in the file; below `lower` in a file that has the two swapped.
+        velocity: [rad/s or m/s], None where nothing bounds it.
+        effort: [N m or N], None where nothing bounds it.
+        line: Where it stands.
+        acceleration: [rad/s² or m/s²], None where nothing bounds it or the format is older than 1.2, as the next two.
+        deceleration: The same while braking.
+        jerk: [rad/s³ or m/s³].
+    """
 
     lower: float | None
     upper: float | None
     velocity: float | None
     effort: float | None
     line: int
+    acceleration: float | None = None
+    deceleration: float | None = None
+    jerk: float | None = None
+
+    @property
+    def swapped(self) -> bool:
+        """Whether no value lies in the range, because its lower end is above its upper one."""
+        return self.lower is not None and self.upper is not None and self.lower > self.upper
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import tag_of
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ class Field:
         required: Whether the element means nothing without it.
         minimum: Smallest value allowed, or None.
         largest: Largest magnitude allowed.
+        since: The version of the format that gave it a meaning.
     """
 
     attribute: str
@@ -35,10 +37,15 @@ class Field:
     required: bool = False
     minimum: float | None = None
     largest: float = math.inf
+    since: FormatVersion = FormatVersion.V1_0
 
 
 _FAR = 1e9  # [m, rad, ratio] beyond it products of transforms lose every digit, or overflow
-_ORIGIN = (Field("xyz", 3, largest=_FAR), Field("rpy", 3, largest=_FAR))
+_ORIGIN = (
+    Field("xyz", 3, largest=_FAR),
+    Field("rpy", 3, largest=_FAR),
+    Field("quat_xyzw", 4, largest=_FAR, since=FormatVersion.V1_1),
+)
 _ROUND = (Field("radius", required=True, minimum=0.0),)
 _INERTIA = tuple(Field(name, required=True) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
 _COLOUR = (Field("rgba", 4, required=True),)
@@ -50,6 +57,10 @@ def _solid_fields(tag: str) -> dict[tuple[str, ...], tuple[Field, ...]]:
         ("link", tag, "origin"): _ORIGIN,
         (*geometry, "box"): (Field("size", 3, required=True, minimum=0.0),),
         (*geometry, "cylinder"): (*_ROUND, Field("length", required=True, minimum=0.0)),
+        (*geometry, "capsule"): (
+            Field("radius", required=True, minimum=0.0, since=FormatVersion.V1_1),
+            Field("length", required=True, minimum=0.0, since=FormatVersion.V1_1),
+        ),
         (*geometry, "sphere"): _ROUND,
         (*geometry, "mesh"): (Field("scale", 3),),
         ("link", tag, "material", "color"): _COLOUR,
@@ -64,17 +75,22 @@ FIELDS: dict[tuple[str, ...], tuple[Field, ...]] = {
     **_solid_fields("collision"),
     ("material", "color"): _COLOUR,
     ("joint", "origin"): _ORIGIN,
-    ("joint", "axis"): (Field("xyz", 3, required=True),),
+    ("joint", "axis"): (Field("xyz", 3),),
     ("joint", "limit"): (
         Field("lower"),
         Field("upper"),
         Field("velocity", minimum=0.0),
         Field("effort", minimum=0.0),
+        *(Field(name, minimum=0.0, since=FormatVersion.V1_2) for name in ("acceleration", "deceleration", "jerk")),
     ),
     ("joint", "mimic"): (Field("multiplier", largest=_FAR), Field("offset", largest=_FAR)),
 }
 """Fields by the path of their element below the root."""
 
+_BY_VERSION = {
+    version: {path: tuple(field for field in fields if field.since <= version) for path, fields in FIELDS.items()}
+    for version in FormatVersion
+}
 _LONGEST_PATH = max(map(len, FIELDS))
 _LEAVES = frozenset(path[-1] for path in FIELDS)
 
@@ -84,8 +100,8 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _WORD = re.compile(r"[^ \t\r\n]+")  # the blanks of XML; str.split() knows many more
 
 
-def fields_of(element: etree._Element) -> tuple[Field, ...]:
-    """The number fields of an element by where it stands; empty for every other element."""
+def fields_of(element: etree._Element, version: FormatVersion) -> tuple[Field, ...]:
+    """The number fields that a version gives an element, by where it stands; empty for every other element."""
     if tag_of(element) not in _LEAVES:
         return ()
     path: list[str] = []
@@ -95,7 +111,7 @@ def fields_of(element: etree._Element) -> tuple[Field, ...]:
         if len(path) > _LONGEST_PATH:
             return ()
         node = parent
-    return FIELDS.get(tuple(path), ())
+    return _BY_VERSION[version].get(tuple(path), ())
 
 
 class NumberError(ValueError):

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
+from nao_kin.urdf.format_version import FormatVersion, declared_version
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -93,6 +95,11 @@ class Outline:
     root: etree._Element
 
     @cached_property
+    def version(self) -> FormatVersion:
+        """The version by which the file is read; 1.0 for one that no reader knows, which is a defect."""
+        return declared_version(self.root) or FormatVersion.V1_0
+
+    @cached_property
     def links(self) -> list[etree._Element]:
         """Link elements in file order."""
         return children(self.root, "link")
@@ -101,6 +108,11 @@ class Outline:
     def joints(self) -> list[etree._Element]:
         """Joint elements in file order."""
         return children(self.root, "joint")
+
+    @cached_property
+    def namespaced(self) -> list[etree._Element]:
+        """Elements of other languages, by a prefix or a namespace, in file order."""
+        return [element for element in self.root.iter(etree.Element) if str(element.tag).startswith("{")]
 
     @cached_property
     def moving(self) -> list[etree._Element]:

@@ -74,6 +74,29 @@ class Positions:
         span = None if tag is None else self._attribute_span(tag, attribute)
         return None if span is None else self.text[span[0] : span[1]]
 
+    def value_span(self, element: etree._Element, attribute: str) -> tuple[int, int] | None:
+        """First character of an attribute's value and the one behind its last; None where the text has none."""
+        tag = self._tags.get(element)
+        return None if tag is None else self._attribute_span(tag, attribute)
+
+    def name_span(self, element: etree._Element) -> tuple[int, int] | None:
+        """The same of an element's name in its start tag."""
+        tag = self._tags.get(element)
+        return None if tag is None else tag.span("name")
+
+    def tag_span(self, element: etree._Element) -> tuple[int, int] | None:
+        """The same of an element's start tag."""
+        tag = self._tags.get(element)
+        return None if tag is None else tag.span()
+
+    def element_span(self, element: etree._Element) -> tuple[int, int] | None:
+        """The same of a whole element, which holds no other element of its own name."""
+        tag = self._tags.get(element)
+        if tag is None or tag[0].endswith("/>"):
+            return None if tag is None else tag.span()
+        closing = re.compile(rf"</{re.escape(tag['name'])}\s*>").search(self.text, tag.end())
+        return None if closing is None else (tag.start(), closing.end())
+
     def instructions(self) -> list[int]:
         """Where processing instructions begin that do not open the file, as the XML declaration does, in file order."""
         starts, opening = [], True

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from nao_kin.urdf.elements import (
     Box,
+    Capsule,
     Cylinder,
     Inertial,
     Limit,
@@ -20,7 +21,9 @@ from nao_kin.urdf.elements import (
     UrdfLink,
 )
 from nao_kin.urdf.fields import optional_number, read_numbers
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import MOVING, children, first, line_of, link_named, tag_of
+from nao_kin.urdf.quaternion import rpy_of_quaternion
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -42,12 +45,12 @@ def read_links(outline: Outline) -> tuple[UrdfLink, ...]:
         for material in children(outline.root, "material")
         if (name := material.get("name", "")) and (colour := _colour(material)) is not None
     }
-    return tuple(_link(element, palette) for element in outline.links)
+    return tuple(_link(element, palette, outline.version) for element in outline.links)
 
 
 def read_joints(outline: Outline) -> tuple[UrdfJoint, ...]:
     """The joints in file order."""
-    return tuple(_joint(element) for element in outline.joints)
+    return tuple(_joint(element, outline.version) for element in outline.joints)
 
 
 def unit(vector: Triple) -> Triple:
@@ -61,29 +64,29 @@ def unit(vector: Triple) -> Triple:
     return (x / length, y / length, z / length)
 
 
-def _link(element: etree._Element, palette: dict[str, Colour]) -> UrdfLink:
+def _link(element: etree._Element, palette: dict[str, Colour], version: FormatVersion) -> UrdfLink:
     return UrdfLink(
         name=element.get("name", ""),
-        visuals=_solids(element, "visual", palette),
-        collisions=_solids(element, "collision", palette),
-        inertial=_inertial(first(element, "inertial")),
+        visuals=_solids(element, "visual", palette, version),
+        collisions=_solids(element, "collision", palette, version),
+        inertial=_inertial(first(element, "inertial"), version),
         line=line_of(element),
     )
 
 
-def _solids(link: etree._Element, tag: str, palette: dict[str, Colour]) -> tuple[Solid, ...]:
+def _solids(link: etree._Element, tag: str, palette: dict[str, Colour], version: FormatVersion) -> tuple[Solid, ...]:
     solids: list[Solid] = []
     for element in children(link, tag):
         material = first(element, "material")
         colour = None if material is None else _material_colour(material, palette)
         geometry = first(element, "geometry")
-        shape = None if geometry is None else _shape(geometry)
+        shape = None if geometry is None else _shape(geometry, version)
         if shape is not None:
-            solids.append(Solid(shape, _origin(element), colour, line_of(element)))
+            solids.append(Solid(shape, _origin(element, version), colour, line_of(element)))
     return tuple(solids)
 
 
-def _shape(geometry: etree._Element) -> Shape | None:
+def _shape(geometry: etree._Element, version: FormatVersion) -> Shape | None:
     """The first shape that URDF defines, else the first that it does not; None where there is none at all."""
     other = None
     for element in geometry:
@@ -92,6 +95,8 @@ def _shape(geometry: etree._Element) -> Shape | None:
                 return Box(_triple(element, "size", _ZERO))
             case "cylinder":
                 return Cylinder(_number(element, "radius"), _number(element, "length"))
+            case "capsule" if version >= FormatVersion.V1_1:
+                return Capsule(_number(element, "radius"), _number(element, "length"))
             case "sphere":
                 return Sphere(_number(element, "radius"))
             case "mesh":
@@ -120,17 +125,18 @@ def _colour(material: etree._Element) -> Colour | None:
     return (red, green, blue, alpha)
 
 
-def _inertial(element: etree._Element | None) -> Inertial | None:
+def _inertial(element: etree._Element | None, version: FormatVersion) -> Inertial | None:
     """Mass and inertia, or None where one of the two is missing: half of them describe no body."""
     mass = None if element is None else first(element, "mass")
     inertia = None if element is None else first(element, "inertia")
     if element is None or mass is None or inertia is None:
         return None
     ixx, ixy, ixz, iyy, iyz, izz = (_number(inertia, component) for component in _COMPONENTS)
-    return Inertial(_number(mass, "value"), _origin(element), (ixx, ixy, ixz, iyy, iyz, izz), line_of(element))
+    origin = _origin(element, version)
+    return Inertial(_number(mass, "value"), origin, (ixx, ixy, ixz, iyy, iyz, izz), line_of(element))
 
 
-def _joint(element: etree._Element) -> UrdfJoint:
+def _joint(element: etree._Element, version: FormatVersion) -> UrdfJoint:
     kind = cast("JointKind", element.get("type", ""))
     moves = kind in MOVING  # a fixed joint may carry a limit, an axis or a mimic, but they mean nothing
     return UrdfJoint(
@@ -138,22 +144,24 @@ def _joint(element: etree._Element) -> UrdfJoint:
         kind=kind,
         parent=link_named(element, "parent"),
         child=link_named(element, "child"),
-        origin=_origin(element),
+        origin=_origin(element, version),
         axis=unit(_triple(first(element, "axis"), "xyz", _X_AXIS)) if moves else _X_AXIS,
-        limit=_limit(first(element, "limit"), kind) if moves else None,
+        limit=_limit(first(element, "limit"), kind, version) if moves else None,
         mimic=_mimic(first(element, "mimic")) if moves else None,
         line=line_of(element),
     )
 
 
-def _limit(element: etree._Element | None, kind: JointKind) -> Limit | None:
+def _limit(element: etree._Element | None, kind: JointKind, version: FormatVersion) -> Limit | None:
     if element is None:
         return None
     lower, upper = optional_number(element, "lower"), optional_number(element, "upper")
-    if kind != "continuous":  # URDF: an absent end of a range is 0
+    if kind != "continuous" and version < FormatVersion.V1_2:  # an absent end of a range is 0
         lower, upper = (0.0 if end is None else end for end in (lower, upper))
     velocity, effort = optional_number(element, "velocity"), optional_number(element, "effort")
-    return Limit(lower, upper, velocity, effort, line_of(element))
+    more = ("acceleration", "deceleration", "jerk")
+    rates = [optional_number(element, name) if version >= FormatVersion.V1_2 else None for name in more]
+    return Limit(lower, upper, velocity, effort, line_of(element), *rates)
 
 
 def _mimic(element: etree._Element | None) -> Mimic | None:
@@ -164,8 +172,11 @@ def _mimic(element: etree._Element | None) -> Mimic | None:
     return Mimic(element.get("joint", ""), factor, 0.0 if offset is None else offset, line_of(element))
 
 
-def _origin(owner: etree._Element) -> Origin:
+def _origin(owner: etree._Element, version: FormatVersion) -> Origin:
     element = first(owner, "origin")
+    if element is not None and version >= FormatVersion.V1_1 and element.get("quat_xyzw") is not None:
+        x, y, z, w = read_numbers(element, "quat_xyzw", (0.0, 0.0, 0.0, 1.0))
+        return Origin(_triple(element, "xyz", _ZERO), rpy_of_quaternion(x, y, z, w))
     return Origin(_triple(element, "xyz", _ZERO), _triple(element, "rpy", _ZERO))
 
 

@@ -16,14 +16,15 @@ from urllib.parse import unquote
 
 from nao_kin.errors import UrdfError
 from nao_kin.urdf.outline import shown
+from nao_kin.urdf.packages import PackageRoots, is_below, own_package, packages_named
 from nao_kin.urdf.size_limits import LIMITS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
 __all__ = ["MESH_SUFFIXES", "MeshRoots", "resolve_mesh"]
 
-MeshRoots: TypeAlias = "Mapping[str, str | os.PathLike[str]] | Sequence[str | os.PathLike[str]]"
+MeshRoots: TypeAlias = PackageRoots
 """Package folders by package name, or folders that hold packages."""
 
 MESH_SUFFIXES = frozenset({".dae", ".obj", ".off", ".ply", ".stl"})
@@ -54,7 +55,8 @@ def resolve_mesh(
     """Find a mesh that a URDF names.
 
     ``package://NAME/rest`` and ``model://NAME/rest`` are looked up in the given roots and then upwards from the
-    document: a folder called NAME above it, or beside one of the folders above it. ``file://`` and absolute names must
+    document: a folder called NAME above it, or beside one of the folders above it, then in
+    ``AMENT_PREFIX_PATH`` and ``ROS_PACKAGE_PATH``. ``file://`` and absolute names must
     lie below an allowed folder, and relative names start at the document. Allowed are the given roots, the document's
     folder, the package it is part of (the nearest folder above with a ``package.xml``) and the package found by name.
 
@@ -98,7 +100,7 @@ def _resolve(filename: str, directory: Path | None, roots: MeshRoots) -> Path:
             real = Path(os.path.realpath(candidate, strict=True))
         except (OSError, ValueError):
             continue  # missing, unreadable, a circle of symbolic links: not there
-        if _is_below(real, allowed if package is None else [*allowed, package]):
+        if is_below(real, allowed if package is None else [*allowed, package]):
             return _checked(real)
         outside = True
     if outside:
@@ -117,10 +119,8 @@ def _candidates(filename: str, directory: Path | None, roots: MeshRoots) -> Iter
         name, _, inside = rest.lstrip("/").partition("/")
         if not _PACKAGE.fullmatch(name):
             raise _RefusedError("mesh-name", "names no package")
-        for folder in _given_packages(name, roots):
-            yield folder / inside.lstrip("/"), None
-        for folder in _packages_above(name, directory):
-            yield folder / inside.lstrip("/"), folder
+        for folder, given in packages_named(name, directory, roots):
+            yield folder / inside.lstrip("/"), None if given else folder
         return
     if scheme == "file":
         rest = unquote(rest.removeprefix("localhost"))
@@ -133,60 +133,14 @@ def _candidates(filename: str, directory: Path | None, roots: MeshRoots) -> Iter
     yield (directory or Path("/")) / rest, None
 
 
-def _given_packages(name: str, roots: MeshRoots) -> Iterator[Path]:
-    if isinstance(roots, Mapping):
-        if name in roots:
-            yield Path(roots[name])
-        return
-    for root in map(Path, roots):
-        yield root / name
-        if root.absolute().name == name:
-            yield root
-
-
-def _packages_above(name: str, directory: Path | None) -> Iterator[Path]:
-    for folder in () if directory is None else (directory, *directory.parents):
-        if folder.name == name and not _is_private(folder):
-            yield Path(os.path.realpath(folder))
-        beside = folder / name
-        if not _is_folder(beside) or _is_private(beside):
-            continue
-        if _is_private(folder) and not _holds_package(beside):
-            continue
-        real = Path(os.path.realpath(beside))
-        # A symbolic link that came with the document must not turn a folder elsewhere into a package of it.
-        if _is_below(real, [Path(os.path.realpath(folder))]):
-            yield real
-
-
-def _is_private(folder: Path) -> bool:
-    """Whether a folder is /, directly below it, or holds the user's home: too much is in there to open it by a name."""
-    home = Path(os.path.expanduser("~"))  # noqa: PTH111 (pathlib raises where there is no home)
-    return len(folder.parts) <= len(("/", "home")) or home.is_relative_to(folder)
-
-
-def _is_folder(path: Path) -> bool:
-    return os.path.isdir(path)  # noqa: PTH112 (pathlib raises where a folder on the way may not be entered)
-
-
-def _holds_package(folder: Path) -> bool:
-    return os.path.isfile(folder / "package.xml")  # noqa: PTH113 (as above)
-
-
 def _allowed_folders(directory: Path | None, roots: MeshRoots) -> list[Path]:
     given: Iterable[str | os.PathLike[str]] = roots.values() if isinstance(roots, Mapping) else roots
     folders = [Path(root) for root in given]
     if directory is not None:
         folders.append(directory)
-        above = (directory, *directory.parents)
-        package = next((folder for folder in above if _holds_package(folder)), None)
-        if package is not None and not _is_private(package):
+        if (package := own_package(directory)) is not None:
             folders.append(package)
     return [Path(os.path.realpath(folder)) for folder in folders]
-
-
-def _is_below(real: Path, folders: Iterable[Path]) -> bool:
-    return any(real.is_relative_to(folder) for folder in folders)
 
 
 def _checked(real: Path) -> Path:

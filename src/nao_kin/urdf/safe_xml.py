@@ -11,6 +11,7 @@ import re
 from lxml import etree
 
 from nao_kin.errors import UrdfError
+from nao_kin.urdf.foreign import declared
 from nao_kin.urdf.size_limits import LIMITS
 
 __all__ = ["read_tree"]
@@ -30,7 +31,9 @@ _PROLOG = re.compile(rb"(?:[ \t\r\n]++|<!--.*?-->|<\?.*?\?>)*+", re.DOTALL)
 _DECLARED_ENCODING = re.compile(rb"<\?xml\s[^>]{0,200}?encoding\s*=\s*[\"']([^\"'>]{1,40})[\"']")
 
 _ENCODING_HINT = "Save the file as UTF-8."
-_EXPANSION_HINT = "Expand the file first: xacro file.xacro > file.urdf"
+_UNDECLARED = re.compile(r"Namespace prefix (\S{1,64}) (?:for \S+ )?on \S+ is not defined")
+_PREFIX = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+_MOST_UNDECLARED = 10_000  # uses of such prefixes; one message each
 
 
 def read_tree(data: bytes, path: str) -> etree._Element:
@@ -84,11 +87,16 @@ def _check_encoding(data: bytes, path: str) -> None:
 
 def _check_prolog(data: bytes, path: str) -> None:
     # XML allows a DOCTYPE only here; anywhere else the parser itself reports it as not well-formed.
-    start = len(_UTF8_MARK) if data.startswith(_UTF8_MARK) else 0
-    prolog = _PROLOG.match(data, start)
-    end = prolog.end() if prolog else start
+    end = _root_start(data)
     if data[end : end + 9].upper() == b"<!DOCTYPE":
         raise _doctype_error(path, _line_at(data, end))
+
+
+def _root_start(data: bytes) -> int:
+    """Where the root element or a DOCTYPE begins."""
+    start = len(_UTF8_MARK) if data.startswith(_UTF8_MARK) else 0
+    prolog = _PROLOG.match(data, start)
+    return prolog.end() if prolog else start
 
 
 def _doctype_error(path: str, line: int | None) -> UrdfError:
@@ -105,7 +113,7 @@ def _check_amount(data: bytes, path: str) -> None:
         raise UrdfError(path, None, f"The file has more than {LIMITS.lines} lines.", code="too-large")
 
 
-def _parse(data: bytes, path: str) -> etree._Element:
+def _parse(data: bytes, path: str, *, may_declare: bool = True) -> etree._Element:
     parser = etree.XMLParser(
         resolve_entities=False,
         no_network=True,
@@ -121,7 +129,21 @@ def _parse(data: bytes, path: str) -> etree._Element:
     try:
         return etree.fromstring(data, parser)
     except etree.XMLSyntaxError as error:
-        raise _syntax_error(error, path) from None
+        prefixes = _undeclared(parser) if may_declare else []
+        if not prefixes:
+            raise _syntax_error(error, path) from None
+    # Only its prefixes are amiss, past which every reader of URDF gets.
+    return _parse(declared(data, _root_start(data), prefixes), path, may_declare=False)
+
+
+def _undeclared(parser: etree.XMLParser) -> list[str]:
+    """The prefixes that nothing declares, if that is all that is wrong with a file."""
+    # The log of the error itself holds what other files have said before.
+    found = [_UNDECLARED.match(entry.message) for entry in parser.error_log]
+    if not found or not all(found) or len(found) > _MOST_UNDECLARED:
+        return []
+    prefixes = {name[1] for name in found if name}
+    return sorted(prefixes) if all(map(_PREFIX.fullmatch, prefixes)) else []
 
 
 def _syntax_error(error: etree.XMLSyntaxError, path: str) -> UrdfError:
@@ -137,9 +159,6 @@ def _syntax_error(error: etree.XMLSyntaxError, path: str) -> UrdfError:
         return UrdfError(path, line, reason, code="too-large")
     if "UTF-8" in said or "encoding" in said:
         return UrdfError(path, line, "The file is not UTF-8 text.", _ENCODING_HINT, code="not-utf8")
-    if said.startswith("Namespace prefix xacro"):
-        reason = "The file is an unexpanded xacro without its namespace."
-        return UrdfError(path, line, reason, _EXPANSION_HINT, code="unexpanded-xacro")
     return UrdfError(path, line, f"The file is not well-formed XML: {said}.", code="not-well-formed")
 
 

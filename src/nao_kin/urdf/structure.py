@@ -9,19 +9,20 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, TypeAlias
 
+from lxml import etree
+
 from nao_kin.errors import near_matches
-from nao_kin.urdf import connection, values
+from nao_kin.urdf import connection, foreign, values
+from nao_kin.urdf.format_version import FormatVersion, declared_version
 from nao_kin.urdf.outline import Defect, Outline, children, describe, line_of, shown, tag_of
 from nao_kin.urdf.size_limits import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from lxml import etree
-
     Rule: TypeAlias = Callable[[Outline], Iterator[Defect]]
 
-__all__ = ["STAGES", "Defect", "Outline", "Rule", "defects", "first_defect"]
+__all__ = ["STAGES", "TOLERATED", "Defect", "Outline", "Rule", "defects", "first_defect", "tolerated_defects"]
 
 
 def root_element(outline: Outline) -> Iterator[Defect]:
@@ -30,24 +31,34 @@ def root_element(outline: Outline) -> Iterator[Defect]:
     if tag == "robot":
         return
     hints = {
-        "sdf": "It is an SDF file (Gazebo); convert it to URDF first.",
-        "mujoco": "It is an MJCF file (MuJoCo); convert it to URDF first.",
+        "sdf": "It is an SDF file (Gazebo), for which Pinocchio's wheel has no reader; convert it to URDF first.",
+        "mujoco": "It is an MJCF file (MuJoCo): named .xml it loads for kinematics; the rules are for URDF.",
     }
     given = shown(tag or str(root.tag))[1:-1]
     message = f"The root element is <{given}>, but a URDF begins with <robot>."
     yield Defect("not-robot", root, message, hints.get(tag, ""))
 
 
+def format_version(outline: Outline) -> Iterator[Defect]:
+    """The version of the format is one that readers know: of another nobody can say what its words mean."""
+    root = outline.root
+    if tag_of(root) == "robot" and declared_version(root) is None:
+        message = f"The version {shown(root.get('version', ''))} of the format is none that readers know."
+        known = ", ".join(map(str, FormatVersion))
+        yield Defect("urdf-version", root, message, f"Versions: {known}; without one, 1.0.", "version")
+
+
 def unexpanded_xacro(outline: Outline) -> Iterator[Defect]:
-    """No element of xacro and no ${...} or $(...) is left in what describes the robot."""
+    """No ${...} or $(...) is left in what describes the robot, nor an element of xacro that it is not whole without."""
     hint = "Expand the file first: xacro file.xacro > file.urdf"
     described = {outline.root, *outline.described()}
-    for element in outline.root.iter():
-        namespace = str(element.tag).partition("}")[0]
-        if element.prefix == "xacro" or (namespace.startswith("{") and "xacro" in namespace):
-            name = f"<xacro:{shown(str(element.tag).rpartition('}')[2])[1:-1]}>"
-            message = f"The element {name} shows that the file is an unexpanded xacro."
-            yield Defect("unexpanded-xacro", element, message, hint)
+    beside = {*foreign.xacro_beside(outline)}
+    whole = bool(beside) and bool(outline.joints) and _is_whole(outline)
+    for element in outline.root.iter(etree.Element):
+        if str(element.tag).startswith("{") and foreign.is_xacro(element):
+            if not (whole and element in beside):
+                message = f"The element {foreign.xacro_name(element)} shows that the file is an unexpanded xacro."
+                yield Defect("unexpanded-xacro", element, message, hint)
             continue
         if element not in described:
             continue  # simulators and controllers have $(...) of their own
@@ -57,6 +68,11 @@ def unexpanded_xacro(outline: Outline) -> Iterator[Defect]:
                 message = f"The value {shown(text)} of {describe(element)} is an unexpanded xacro expression."
                 yield Defect("unexpanded-xacro", element, message, hint, str(attribute))
                 break
+
+
+def _is_whole(outline: Outline) -> bool:
+    """Whether what stands in the file is a tree of links without structural defects, whatever else is in it."""
+    return not any(next(rule(outline), None) for stage in STAGES[2:] for rule in stage)
 
 
 def too_many(outline: Outline) -> Iterator[Defect]:
@@ -147,7 +163,7 @@ def single_parts(outline: Outline) -> Iterator[Defect]:
 
 
 STAGES: tuple[tuple[Rule, ...], ...] = (
-    (root_element,),
+    (root_element, format_version),
     (unexpanded_xacro,),
     (too_many,),
     (
@@ -160,6 +176,8 @@ STAGES: tuple[tuple[Rule, ...], ...] = (
         values.number_fields,
         values.zero_axes,
         values.missing_limits,
+        values.rotations,
+        values.incomplete_ranges,
         values.inverted_limits,
         values.mesh_names,
         connection.mimic_references,
@@ -173,6 +191,16 @@ STAGES: tuple[tuple[Rule, ...], ...] = (
     ),
 )
 """All structural rules; the reader refuses a file for the first defect of the first stage that has one."""
+
+
+TOLERATED: tuple[Rule, ...] = (
+    foreign.undeclared_prefixes,
+    foreign.leftover_xacro,
+    values.idle_limits,
+    values.swapped_limits,
+    values.axes_without_direction,
+)
+"""Rules on what every reader gets past: such a file is read, and whoever reads it is told."""
 
 
 def defects(root: etree._Element) -> Iterator[Defect]:
@@ -196,3 +224,8 @@ def first_defect(outline: Outline) -> Defect | None:
         if found:
             return min(found, key=lambda defect: defect.line)
     return None
+
+
+def tolerated_defects(outline: Outline) -> list[Defect]:
+    """What is wrong with a file that is read all the same, in file order."""
+    return sorted((defect for rule in TOLERATED for defect in rule(outline)), key=lambda defect: defect.line)

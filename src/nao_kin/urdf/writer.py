@@ -11,11 +11,12 @@ if TYPE_CHECKING:
 
     from nao_kin.urdf.elements import Inertial, Limit, Origin, UrdfJoint, UrdfLink
 
-__all__ = ["kinematic_xml"]
+__all__ = ["UNLIMITED", "kinematic_xml"]
 
 # urdfdom refuses a <limit> without velocity or effort and does not read "inf"; the largest finite number is the
 # nearest thing to "no limit" that it takes.
-_UNLIMITED = sys.float_info.max
+UNLIMITED = sys.float_info.max
+"""What is written as a velocity or effort limit [rad/s, m/s, N m or N] where there is none."""
 
 
 def kinematic_xml(name: str, links: Iterable[UrdfLink], joints: Iterable[UrdfJoint]) -> str:
@@ -68,8 +69,8 @@ def _limit(limit: Limit) -> str:
     values = {
         "lower": limit.lower,
         "upper": limit.upper,
-        "velocity": _UNLIMITED if limit.velocity is None else limit.velocity,
-        "effort": _UNLIMITED if limit.effort is None else limit.effort,
+        "velocity": UNLIMITED if limit.velocity is None else limit.velocity,
+        "effort": UNLIMITED if limit.effort is None else limit.effort,
     }
     attributes = " ".join(f'{name}="{value!r}"' for name, value in values.items() if value is not None)
     return f"<limit {attributes}/>"

@@ -12,6 +12,7 @@ import numpy as np
 from nao_kin.chain import Chain, OutsideLimit
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.robot import Robot
+from nao_kin.view.chain_ends import with_ends
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Curve, NamedPosture, Panel, Scene, SceneChain, SceneGoal, SceneMotion
 from nao_kin.view.workspace_scene import with_workspace
@@ -202,8 +203,10 @@ def _space_scene(space: Chain | Tree, q: list[float], targets: Mapping[str, Targ
         joints = tuple(replace(joint, value=values[joint.name]) for joint in scene.joints)
         return replace(scene, joints=joints, goals=tuple(_goal(0, target) for target in targets.values()))
     scene = robot_scene(robot, robot.complete(dict(zip(space.joint_names, q, strict=True))))
-    node = {label.label: index for index, label in enumerate(scene.nodes)}
-    own = [SceneChain(_short(chain), node[chain.base_name], node[chain.tip_name]) for chain in chains.values()]
+    own = []
+    for chain in chains.values():
+        scene, base, tip = with_ends(scene, chain)
+        own.append(SceneChain(_short(chain), base, tip))
     ends = {(chain.base, chain.tip) for chain in own}
     others = [chain for chain in scene.chains if (chain.base, chain.tip) not in ends]
     goals = tuple(_goal(list(chains).index(tip), target) for tip, target in targets.items())

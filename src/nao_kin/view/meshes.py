@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_kin.errors import UrdfError
 from nao_kin.se3 import from_xyz_rpy
-from nao_kin.urdf.elements import Box, Cylinder, MeshFile, OtherShape, Solid, Sphere
+from nao_kin.urdf.elements import Box, Capsule, Cylinder, MeshFile, OtherShape, Solid, Sphere
 from nao_kin.urdf.mesh_errors import UnreadableMeshError
 from nao_kin.urdf.mesh_scene import FORMATS, material_colour, read_bodies
 from nao_kin.urdf.outline import shown
@@ -126,10 +126,11 @@ class Triangulator:
 
 
 @functools.lru_cache(maxsize=512)  # a robot repeats its shapes, and a notebook its robot
-def triangulate(shape: Box | Cylinder | Sphere) -> Part:
+def triangulate(shape: Box | Cylinder | Capsule | Sphere) -> Part:
     """A primitive as triangles around its own origin, faces outwards.
 
-    Cylinders have 32 sections and spheres 1280 faces, all inscribed: the volume is at most 1 % below the true one.
+    Cylinders and capsules have 32 sections and spheres 1280 faces, all inscribed: the volume is at most
+    1 % below the true one.
     """
     import trimesh.creation
 
@@ -138,6 +139,9 @@ def triangulate(shape: Box | Cylinder | Sphere) -> Part:
             body = trimesh.creation.box(extents=shape.size)
         case Cylinder():
             body = trimesh.creation.cylinder(shape.radius, shape.length, sections=CYLINDER_SECTIONS)
+        case Capsule():
+            count = [CYLINDER_SECTIONS, CYLINDER_SECTIONS]
+            body = trimesh.creation.capsule(shape.length, shape.radius, count=count)
         case Sphere():
             body = trimesh.creation.icosphere(subdivisions=SPHERE_SUBDIVISIONS, radius=shape.radius)
     vertices, faces = split_creases(np.asarray(body.vertices), np.asarray(body.faces))
@@ -145,11 +149,11 @@ def triangulate(shape: Box | Cylinder | Sphere) -> Part:
     return Part(vertices, faces, colour=None)
 
 
-def _primitive(shape: Box | Cylinder | Sphere) -> Part:
+def _primitive(shape: Box | Cylinder | Capsule | Sphere) -> Part:
     match shape:
         case Box():
             largest = max(shape.size)
-        case Cylinder():
+        case Cylinder() | Capsule():
             largest = max(shape.radius, shape.length)
         case Sphere():
             largest = shape.radius

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.view.chain_ends import with_ends
 from nao_kin.view.meshes import Mesh
 from nao_kin.view.robot_scene import robot_scene
 from nao_kin.view.scene import Node, NodeDrive, Panel, Rod, Scene, SceneChain, SceneJoint
@@ -92,7 +93,8 @@ def _surroundings(chain: Chain, q: list[float]) -> tuple[Scene, int]:
         posture = robot.complete(dict(zip(chain.joint_names, q, strict=True)))
         scene = robot_scene(robot, posture)
         nodes = tuple(replace(node, meshes=tuple(map(_faint, node.meshes))) for node in scene.nodes)
-        return replace(scene, nodes=nodes), [node.label for node in nodes].index(chain.base_name)
+        scene, base, _ = with_ends(replace(scene, nodes=nodes), chain)
+        return scene, base
     joints = tuple(
         SceneJoint(joint.name, joint.kind, value, joint.lower, joint.upper, joint.max_velocity)
         for joint, value in zip(chain.joints, q, strict=True)

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from nao_kin.analytic.six_r.shared import Placed
+    from nao_kin.analytic.six_r.shared import Placed, Roots
     from nao_kin.arrays import Floats
 
     Two: TypeAlias = tuple[float, float]
@@ -59,7 +59,9 @@ __all__ = ["BRANCHES", "solve_parallel", "solve_parallel_many", "solve_spherical
 
 BRANCHES: Final = 8
 _TURNS: Final = 256  # where any first joint will do, turns tried on each side of the middle of its range
-_ON_AXIS: Final = 1e-9  # sine: a direction this near to an axis says nothing about the turn round it
+_NEARLY_ON_AXIS: Final = 1e-5  # sine: from here on a cosine tells two turns apart
+_MERGED: Final = 1e-11  # half the turn between two roots that are one
+_ON_AXIS: Final = 1e-10  # sine: a direction this near to an axis says nothing about the turn round it
 
 
 class Asked(NamedTuple):
@@ -171,17 +173,55 @@ def _at(task: Asked, w: Three, first: Two, label: int, free: int, count: int, pa
     k5, k6 = axis(arm, 4), axis(arm, 5)
     end = turned_about(k1, c, s, turned(G[0], k6))
     facing = turned_back(G[0], turned_about(k1, c, -s, h))  # the plane's normal as the last link sees it
-    number, c5, s5, other_c, other_s = roots(h, k5, k6, dot(h, end), ROUNDING)
-    clear *= off_axis(k6, facing)
-    if number < 0 or off_axis(k6, facing) <= _ON_AXIS:
+    sine = off_axis(k6, facing)
+    number, c5, s5, other_c, other_s = wrist_roots(h, k5, k6, dot(h, end), sine, ROUNDING)
+    clear *= sine
+    if number < 0 or sine <= _ON_AXIS:
         return _any_wrist(task, Branch(first, seen, label, free | ANY_WRIST, 0.0), (c5, s5), count)
     free |= ONE_WRIST if number == 1 else 0
+    start, fifth = count, (c5, s5)
     for wrist in range(number):
         if wrist == 1:
             c5, s5 = other_c, other_s
         q6 = turn_between(k6, facing, turned_about(k5, c5, -s5, h))
         count = _plane(task, Branch(first, seen, label + 2 * wrist, free, clear), (c5, s5), q6, count)
+    if number > 0 and count == start and sine <= task.slack:
+        # The last joint that would be exact has the links not reach; others are as near as the axes are to parallel.
+        return _any_wrist(task, Branch(first, seen, label, free | ANY_WRIST, 0.0), fifth, count)
     return count
+
+
+@jit
+def wrist_roots(h: Three, k: Three, v: Three, value: float, sine: float, slack: float) -> Roots:
+    """`roots` for directions h and v of which a turn about k brings v near h or −h, where a cosine has lost its digits.
+
+    With most = |k × h| |k × v|, a turn δ away from the nearest one, where the sine of their angle is sine0, gives
+    sine² = sine0² + most δ². Sines are known to all their digits.
+
+    Args:
+        h: Unit direction.
+        k: Unit axis.
+        v: Unit direction that is turned.
+        value: The wanted h · Rot(k, q) v.
+        sine: The sine of the same angle.
+        slack: How far beyond its extreme the value may be.
+    """
+    if sine > _NEARLY_ON_AXIS:
+        return roots(h, k, v, value, slack)
+    part = dot(h, k) * dot(k, v)
+    a, b = dot(h, v) - part, dot(h, cross(k, v))
+    most = math.copysign(math.sqrt(a * a + b * b), value)
+    if abs(most) <= slack:
+        return -1, 1.0, 0.0, 1.0, 0.0
+    c, s = a / most, b / most
+    least = off_axis(h, turned_about(k, c, s, v))
+    square = (sine * sine - least * least) / abs(most)
+    if square < 0.0 and least - sine > slack:
+        return 0, 1.0, 0.0, 1.0, 0.0
+    if square <= _MERGED * _MERGED:
+        return 1, c, s, 1.0, 0.0
+    s_d, c_d = sine_cosine(math.sqrt(square))
+    return 2, c * c_d - s * s_d, s * c_d + c * s_d, c * c_d + s * s_d, s * c_d - c * s_d
 
 
 @jit
@@ -256,10 +296,11 @@ def _wrist(task: Asked, branch: Branch, q2: float, q3: float, count: int) -> int
     across = beside(k6)
     end = _seen_from_forearm(arm, task.G, first, c, s, k6)
     turning = _seen_from_forearm(arm, task.G, first, c, s, across)
-    number, c5, s5, other_c, other_s = roots(k4, k5, k6, dot(k4, end), 1e-9)
+    sine = off_axis(k4, end)
+    number, c5, s5, other_c, other_s = wrist_roots(k4, k5, k6, dot(k4, end), sine, 1e-9)
     if number == 0:
         return count
-    aligned = number < 0 or off_axis(k4, end) <= _ON_AXIS
+    aligned = number < 0 or sine <= _ON_AXIS
     free = branch.free | (ANY_WRIST if aligned else ONE_WRIST if number == 1 else 0)
     for wrist in range(1 if aligned else number):
         if wrist == 1:
@@ -269,7 +310,7 @@ def _wrist(task: Asked, branch: Branch, q2: float, q3: float, count: int) -> int
         q6 = turn_between(k6, across, turned_about(k5, c5, -s5, turned_about(k4, c4, -s4, turning)))
         q1, q5 = -math.atan2(first[1], first[0]), math.atan2(s5, c5)
         count = store(arm, task.rows, count, (q1, q2, q3, q4, q5, q6), branch.label + 2 * wrist, free)
-    return settled_rows(arm, task.G, task.rows, count, start, branch.clear * off_axis(k4, end))
+    return settled_rows(arm, task.G, task.rows, count, start, branch.clear * sine)
 
 
 @jit

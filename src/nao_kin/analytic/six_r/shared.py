@@ -147,8 +147,9 @@ def roots(h: Three, k: Three, v: Three, value: float, slack: float) -> Roots:
 
 @jit
 def turn_between(k: Three, a: Three, b: Three) -> float:
-    """The turn about k that takes a to b, seen along k [rad]."""
-    return math.atan2(dot(k, cross(a, b)), dot(a, b) - dot(k, a) * dot(k, b))
+    """The turn about k that takes a to b, seen along k [rad]; to all digits also where both are nearly along k."""
+    a, b = cross(k, a), cross(k, b)
+    return math.atan2(dot(k, cross(a, b)), dot(a, b))
 
 
 @jit

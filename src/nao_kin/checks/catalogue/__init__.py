@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from nao_kin.checks.catalogue.control_codes import CONTROL
 from nao_kin.checks.catalogue.entry import Entry
 from nao_kin.checks.catalogue.file_codes import FILES
 from nao_kin.checks.catalogue.joint_codes import JOINTS
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CATALOGUE", "Entry", "require_codes"]
 
-CATALOGUE: Final[dict[str, Entry]] = {entry.code: entry for entry in (*FILES, *NAMES, *JOINTS, *LINKS, *MODELS)}
+CATALOGUE: Final[dict[str, Entry]] = {
+    entry.code: entry for entry in (*FILES, *NAMES, *JOINTS, *LINKS, *CONTROL, *MODELS)
+}
 """Entries by code, by topic in the order in which a reader would ask."""
 
 

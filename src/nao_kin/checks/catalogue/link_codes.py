@@ -65,6 +65,15 @@ LINKS: Final = (
         "Add an <inertial>, if only a small one.",
     ),
     Entry(
+        "empty-inertial",
+        Severity.warning,
+        "The mass and the inertia of a link that moves are given as 0.",
+        "Simulators divide by both and fail, or leave the link out; what is fixed to it does not help them.",
+        '<mass value="0"/><inertia ixx="0" …/>',
+        '<mass value="0.01"/><inertia ixx="1e-6" …/>',
+        "Give those of the part, or of a gram.",
+    ),
+    Entry(
         "no-masses",
         Severity.note,
         "No link of the robot has a mass.",
@@ -117,6 +126,15 @@ LINKS: Final = (
         "<visual><geometry><cone/></geometry></visual>",
         '<visual><geometry><sphere radius="0.1"/></geometry></visual>',
         "Shapes: box, cylinder, sphere, mesh.",
+    ),
+    Entry(
+        "no-collision",
+        Severity.note,
+        "A link that moves is drawn but has no collision shape, unlike others of the robot.",
+        "Planners and simulators let everything pass through it.",
+        '<link name="hand"><visual>…</visual></link>',
+        '<link name="hand"><visual>…</visual><collision>…</collision></link>',
+        "Give it a box, cylinder, sphere or mesh of few triangles.",
     ),
     Entry(
         "mesh-without-name",

@@ -1,4 +1,4 @@
-"""Rules about a robot running into itself, on its boxes, cylinders and spheres."""
+"""Rules about a robot running into itself, on its boxes, cylinders, capsules and spheres."""
 
 from __future__ import annotations
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from nao_kin.checks.subject import numbers
 from nao_kin.urdf.fields import Field, fields_of
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_of
+from nao_kin.urdf.quaternion import SHORTEST_QUATERNION
 from nao_kin.urdf.values import field_defects
 
 if TYPE_CHECKING:
@@ -19,7 +21,14 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
 
-__all__ = ["angles_in_degrees", "colours", "lengths_in_millimetres", "other_readers_numbers", "stray_blanks"]
+__all__ = [
+    "angles_in_degrees",
+    "colours",
+    "lengths_in_millimetres",
+    "other_readers_numbers",
+    "quaternions_of_other_length",
+    "stray_blanks",
+]
 
 _OTHERS_READ: dict[str, tuple[Field, ...]] = {
     "dynamics": (Field("damping", minimum=0.0), Field("friction", minimum=0.0)),
@@ -39,6 +48,7 @@ _SUSPECT = re.compile(
     "|".join(rf"=\s*{q}(?:\s[^{q}]*|[^{q}]*[\t\r\n][^{q}]*|[^{q}]*\s){q}" for q in ('"', "'")) + "|&#"
 )
 
+_UNIT = 1e-3  # a printed 0.707 is meant as part of a unit quaternion
 _FULL_TURN = 2.0 * math.pi + 0.01  # [rad]
 _FAR = 10.0  # [m] no robot has neighbouring joints or a shape's centre that far away
 _FAR_FOR_IT = 25.0  # times the middle distance between joints
@@ -65,7 +75,7 @@ def stray_blanks(subject: Subject) -> Iterator[Defect]:
         return
     for element in subject.outline.described():
         own = _OTHERS_READ.get(tag_of(element), ()) if _owner_tag(element) == "joint" else ()
-        for field in (*fields_of(element), *own):
+        for field in (*fields_of(element, subject.outline.version), *own):
             raw = subject.positions.raw_value(element, field.attribute) or ""
             if numbers(element, field.attribute, field.count) is None:
                 continue  # reported as no number
@@ -76,6 +86,19 @@ def stray_blanks(subject: Subject) -> Iterator[Defect]:
                 message = f"The {field.attribute} of the {describe(element)} has {what}."
                 hint = "ROS and Pinocchio refuse it: write numbers with single blanks between them and none around."
                 yield Defect("stray-blank", element, message, hint, field.attribute)
+
+
+def quaternions_of_other_length(subject: Subject) -> Iterator[Defect]:
+    """A quaternion has length 1."""
+    if subject.outline.version < FormatVersion.V1_1:
+        return
+    for element in _origins(subject):
+        quaternion = numbers(element, "quat_xyzw", 4)
+        length = math.hypot(*quaternion) if quaternion else 1.0
+        if quaternion and length >= SHORTEST_QUATERNION and abs(length - 1.0) > _UNIT:
+            message = f"The quat_xyzw of the {describe(element)} has length {length:.6g}, not 1."
+            hint = f'Write quat_xyzw="{" ".join(f"{part / length:.9g}" for part in quaternion)}".'
+            yield Defect("quaternion-not-unit", element, message, hint, "quat_xyzw")
 
 
 def colours(subject: Subject) -> Iterator[Defect]:

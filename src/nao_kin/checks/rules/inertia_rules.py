@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.checks.subject import Subject
 
-__all__ = ["incomplete_inertials", "masses_out_of_scale", "moving_without_inertia", "principal_moments"]
+__all__ = [
+    "empty_inertials",
+    "incomplete_inertials",
+    "masses_out_of_scale",
+    "moving_without_inertia",
+    "principal_moments",
+]
 
 _COMPONENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _NOTHING = 1e-13  # [kg m²] the inertia of no part of a robot, but of rounding errors in exported files
@@ -62,6 +68,16 @@ def incomplete_inertials(subject: Subject) -> Iterator[Defect]:
             if first(inertial, tag) is None:
                 message = f"The {describe(inertial)} has no <{tag}>, so readers ignore all of it."
                 yield Defect("incomplete-inertial", inertial, message, f"Add <{tag} .../>.")
+
+
+def empty_inertials(subject: Subject) -> Iterator[Defect]:
+    """A moving link does not say that it has no mass and no inertia: simulators divide by both."""
+    moved = {link_named(joint, "child") for joint in subject.outline.moving}
+    for body in _bodies(subject):
+        if body.link.get("name") in moved and body.mass == 0.0 and not body.matrix.any():
+            message = f"The {describe(body.link)} is moved by a joint, and its mass and inertia are given as 0."
+            hint = "Give it those of the part, or of a gram; a frame that weighs nothing is fixed to what carries it."
+            yield Defect("empty-inertial", body.inertial, message, hint)
 
 
 def principal_moments(subject: Subject) -> Iterator[Defect]:

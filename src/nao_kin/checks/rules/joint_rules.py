@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from nao_kin.checks.digits import swapped_digits
 from nao_kin.checks.subject import numbers
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import MOVING, Defect, describe, first
 from nao_kin.urdf.values import SHORTEST_AXIS
 
@@ -19,9 +21,11 @@ if TYPE_CHECKING:
 __all__ = [
     "axes_of_other_length",
     "continuous_with_limits",
+    "empty_axes",
     "incomplete_limits",
     "limits_in_other_units",
     "mimics_of_fixed_joints",
+    "slips_between_limits",
     "zero_ranges",
 ]
 
@@ -45,8 +49,19 @@ def axes_of_other_length(subject: Subject) -> Iterator[Defect]:
             yield Defect("axis-not-unit", axis, message, hint, "xyz")
 
 
+def empty_axes(subject: Subject) -> Iterator[Defect]:
+    """An <axis> says a direction even where nothing turns about it."""
+    for joint in subject.outline.joints:
+        axis = first(joint, "axis")
+        if axis is not None and axis.get("xyz") is None and joint.get("type") not in MOVING:
+            message = f"The <axis> of the {describe(joint)} has no xyz."
+            yield Defect("empty-axis", axis, message, "Remove it: the joint does not move.")
+
+
 def incomplete_limits(subject: Subject) -> Iterator[Defect]:
-    """A <limit> says how fast and how strong, as URDF demands."""
+    """A <limit> says how fast and how strong, as URDF demands before version 1.2."""
+    if subject.outline.version >= FormatVersion.V1_2:
+        return
     for joint in subject.outline.joints:
         limit = first(joint, "limit")
         missing = [] if limit is None else [name for name in ("velocity", "effort") if limit.get(name) is None]
@@ -63,10 +78,28 @@ def zero_ranges(subject: Subject) -> Iterator[Defect]:
         if limit is None or joint.get("type") == "continuous":
             continue
         lower, upper = _end(limit, "lower"), _end(limit, "upper")
+        absent = any(limit.get(side) is None for side in ("lower", "upper"))
+        if absent and subject.outline.version >= FormatVersion.V1_2:
+            continue  # refused for it
         if lower is not None and lower == upper:
             message = f"The {describe(joint)} may only be at {lower:g}: its limits are equal."
             hint = "An absent limit counts as 0; give both, or make the joint fixed."
             yield Defect("zero-range", limit, message, hint, "lower")
+
+
+def slips_between_limits(subject: Subject) -> Iterator[Defect]:
+    """The two limits of a joint are not the same figure with two neighbouring digits swapped."""
+    for joint in subject.outline.moving:
+        limit = first(joint, "limit")
+        lower, upper = (None if limit is None else numbers(limit, side) for side in ("lower", "upper"))
+        if limit is None or lower is None or upper is None or joint.get("type") == "continuous":
+            continue
+        if lower[0] < 0.0 < upper[0] and swapped_digits(lower[0], upper[0]):
+            message = (
+                f"The limits of the {describe(joint)} are {lower[0]:.9g} and {upper[0]:.9g}: the same figure with "
+            )
+            message += "two digits swapped."
+            yield Defect("limit-digits", limit, message, "Look up which of the two is right.", "upper")
 
 
 def continuous_with_limits(subject: Subject) -> Iterator[Defect]:

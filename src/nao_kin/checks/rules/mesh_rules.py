@@ -13,8 +13,9 @@ import numpy as np
 
 from nao_kin.checks.subject import numbers
 from nao_kin.errors import UrdfError, near_matches
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.mesh_errors import LargeMeshError, UnreadableMeshError
-from nao_kin.urdf.outline import Defect, children, describe, first, shown, tag_of
+from nao_kin.urdf.outline import Defect, children, describe, first, link_named, shown, tag_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
 
-__all__ = ["mesh_contents", "mesh_files", "shapes"]
+__all__ = ["mesh_contents", "mesh_files", "missing_collisions", "shapes"]
 
 _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _ABSOLUTE = re.compile(r"file:|/|[A-Za-z]:[\\/]", re.IGNORECASE)
@@ -36,15 +37,37 @@ _BYTES = 64 * 1024 * 1024
 
 def shapes(subject: Subject) -> Iterator[Defect]:
     """Every visual and collision element has a shape that URDF defines."""
+    version = subject.outline.version
+    known = _SHAPES | {"capsule"} if version >= FormatVersion.V1_1 else _SHAPES
     for link in subject.outline.links:
         for solid in (*children(link, "visual"), *children(link, "collision")):
             geometry = first(solid, "geometry")
             tags = [] if geometry is None else [tag_of(shape) for shape in geometry]
-            if not tags or tags[0] not in _SHAPES:  # other readers look at the first one only
-                what = f"as its shape a <{tags[0][:40]}>, which URDF does not define" if any(tags[:1]) else "no shape"
+            if not tags or tags[0] not in known:  # other readers look at the first one only
+                what = (
+                    f"as its shape a <{tags[0][:40]}>, which URDF {version} does not define"
+                    if any(tags[:1])
+                    else "no shape"
+                )
                 message = f"The {describe(solid)} has {what}."
                 hint = "Shapes: <box>, <cylinder>, <sphere>, <mesh>, inside <geometry>."
+                if tags[:1] == ["capsule"]:
+                    hint = 'Capsules came with 1.1: write <robot version="1.1">, or a cylinder and two spheres.'
                 yield Defect("no-shape", solid if geometry is None else geometry, message, hint)
+
+
+def missing_collisions(subject: Subject) -> Iterator[Defect]:
+    """What moves and can be seen can be hit too, on a robot whose other links can."""
+    outline = subject.outline
+    solid = {link.get("name", "") for link in outline.links if first(link, "collision") is not None}
+    if not solid:
+        return  # a robot without any is meant to be looked at
+    for joint in outline.moving:
+        link = outline.link_by_name.get(link_named(joint, "child"))
+        if link is not None and first(link, "visual") is not None and first(link, "collision") is None:
+            message = f"The {describe(link)} moves and is drawn, but has no <collision>."
+            hint = "Planners and simulators let everything pass through it."
+            yield Defect("no-collision", link, message, hint, "name")
 
 
 def mesh_files(subject: Subject) -> Iterator[Defect]:

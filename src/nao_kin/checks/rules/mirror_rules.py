@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nao_kin.checks.digits import swapped_digits
 from nao_kin.checks.rules.twin_rules import AXIS_NAMES, Symmetry, twins
 from nao_kin.checks.subject import numbers
 from nao_kin.urdf.outline import Defect, describe, first, line_of, shown
@@ -53,7 +54,7 @@ def geometry_of_twins(subject: Subject) -> Iterator[Defect]:
 def _origin_defect(a: etree._Element, b: etree._Element, attribute: str, plane: int) -> Defect:
     origin = first(b, "origin")
     ours, theirs = (numbers(first(joint, "origin"), attribute, 3) or (0.0,) * 3 for joint in (a, b))
-    swapped = any(_swapped(x, y) for x, y in zip(ours, theirs, strict=True))
+    swapped = any(swapped_digits(x, y) for x, y in zip(ours, theirs, strict=True))
     message = (
         f"The {attribute} of the {describe(b)} is {_text(b, 'origin', attribute)}, that of its twin {_twin(a)} "
         f"{_text(a, 'origin', attribute)}: not mirror images along {AXIS_NAMES[plane]}."
@@ -102,7 +103,7 @@ def _value_defect(
     limit, (wanted, found) = first(right, "limit"), values
     label = f"{what} limit" if what in {"lower", "upper"} else f"largest {what}"
     message = f"The {label} of the {describe(right)} is {found:.9g}, but {wanted:.9g} by its twin {_twin(left)}."
-    code = "swapped-digits" if _swapped(found, wanted) else code
+    code = "swapped-digits" if swapped_digits(found, wanted) else code
     return Defect(code, right if limit is None else limit, message, _EITHER, what)
 
 
@@ -118,7 +119,7 @@ def inertia_of_twins(subject: Subject) -> Iterator[Defect]:
         if inertial is None:
             continue
         if abs(a.mass - b.mass) > _RELATIVE * max(a.mass, b.mass):
-            code = "swapped-digits" if _swapped(a.mass, b.mass) else "mirror-mass"
+            code = "swapped-digits" if swapped_digits(a.mass, b.mass) else "mirror-mass"
             message = f"The {describe(theirs)} weighs {b.mass:.9g} kg, its twin {_twin(ours)} {a.mass:.9g} kg."
             mass = first(inertial, "mass")
             yield Defect(code, inertial if mass is None else mass, message, _EITHER, "value")
@@ -136,7 +137,7 @@ def _moment_defects(inertial: etree._Element, ours: etree._Element, a: Inertial,
             f"those of its twin {_twin(ours)} {texts[0]}."
         )
         inertia = first(inertial, "inertia")
-        code = "swapped-digits" if any(map(_swapped, a.inertia, b.inertia)) else "mirror-inertia"
+        code = "swapped-digits" if any(map(swapped_digits, a.inertia, b.inertia)) else "mirror-inertia"
         yield Defect(code, inertial if inertia is None else inertia, message, _EITHER)
 
 
@@ -144,15 +145,6 @@ def _principal(body: Inertial) -> Floats:
     xx, xy, xz, yy, yz, zz = body.inertia
     moments: Floats = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
     return moments
-
-
-def _swapped(a: float, b: float) -> bool:
-    """Whether two figures differ in the order of two neighbouring digits, as typing slips leave them."""
-    x, y = f"{abs(a):.8f}", f"{abs(b):.8f}"
-    if len(x) != len(y):
-        return False
-    apart = [i for i, (p, q) in enumerate(zip(x, y, strict=True)) if p != q]
-    return len(apart) == 2 and apart[1] == apart[0] + 1 and x[apart[0]] == y[apart[1]] and x[apart[1]] == y[apart[0]]
 
 
 def _same_size(a: etree._Element | None, b: etree._Element | None) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from lxml import etree
 
 from nao_kin.robot.couplings import contradictions
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import Defect, describe, first, shown
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ def readers_agree(subject: Subject) -> Iterator[Defect]:
 
     robot = subject.robot
     try:
-        text = io.BytesIO(etree.tostring(subject.outline.root))
+        text = io.BytesIO(_for_yourdfpy(subject))
         other = yourdfpy.URDF.load(text, load_meshes=False, build_collision_scene_graph=False)
     except Exception as error:  # whatever a reader of other people's files stumbles on
         message = f"yourdfpy cannot read the file: {type(error).__name__}: {shown(str(error))}."
@@ -116,6 +117,13 @@ def readers_agree(subject: Subject) -> Iterator[Defect]:
             hint = "The file can be read in two ways; look at the joints between it and the root."
             yield Defect("readers-disagree", link, message, hint)
             return
+
+
+def _for_yourdfpy(subject: Subject) -> bytes:
+    """The file, or what we have read in words of 1.0: yourdfpy knows no later version."""
+    if subject.outline.version > FormatVersion.V1_0:
+        return subject.document.to_xml().encode()
+    return etree.tostring(subject.outline.root)
 
 
 def _first_apart(ours: Mapping[str, pin.SE3], theirs: Mapping[str, object]) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
+from nao_kin.urdf.format_version import FormatVersion
 from nao_kin.urdf.outline import Defect, describe, shown, tag_of
 
 if TYPE_CHECKING:
@@ -15,10 +16,15 @@ if TYPE_CHECKING:
 
     from nao_kin.checks.subject import Subject
 
-__all__ = ["VERSIONS", "VOCABULARY", "instructions", "repeated_elements", "unknown_words", "version"]
+__all__ = ["LATER", "VOCABULARY", "instructions", "later_words", "repeated_elements", "unknown_words"]
 
-VERSIONS = ("1.0", "1.1", "1.2")
-"""Versions of the format that urdfdom, the reader of ROS and Pinocchio, takes."""
+LATER = {
+    ("origin", "quat_xyzw"): FormatVersion.V1_1,
+    ("limit", "acceleration"): FormatVersion.V1_2,
+    ("limit", "deceleration"): FormatVersion.V1_2,
+    ("limit", "jerk"): FormatVersion.V1_2,
+}
+"""Attributes that only a later version of the format than 1.0 reads, by element."""
 
 _LIKENESS = 0.72  # "orgin" and "lower_limit" are meant words, "kinematic" and "surface" are words of other programs
 _LENGTHS = 2  # characters left out or typed twice; "gear_velocity" is a word of its own
@@ -51,7 +57,7 @@ VOCABULARY: dict[str, Words] = {
     "inertial": Words(once=("origin", "mass", "inertia")),
     "mass": Words(attributes=("value",)),
     "inertia": Words(attributes=("ixx", "ixy", "ixz", "iyy", "iyz", "izz")),
-    "origin": Words(attributes=("xyz", "rpy")),
+    "origin": Words(attributes=("xyz", "rpy", "quat_xyzw")),
     "visual": _SOLID,
     "collision": _SOLID,
     "geometry": Words(once=("box", "cylinder", "sphere", "mesh", "capsule")),
@@ -85,13 +91,21 @@ for _parent, _words in VOCABULARY.items():
         _PLACES.setdefault(_child, []).append(_parent)
 
 
-def version(subject: Subject) -> Iterator[Defect]:
-    """The version of the format is one that readers take."""
-    root = subject.outline.root
-    given = root.get("version")
-    if given is not None and given.strip() not in VERSIONS:
-        message = f"The version {shown(given)} of the format is none that readers know."
-        yield Defect("urdf-version", root, message, f"Versions: {', '.join(VERSIONS)}; without one, 1.0.", "version")
+def later_words(subject: Subject) -> Iterator[Defect]:
+    """No attribute stands there that means something only in a later version of the format than the file's."""
+    version = subject.outline.version
+    later = {place: since for place, since in LATER.items() if since > version}
+    if not later:
+        return
+    tags = {tag for tag, _ in later}
+    for element in subject.outline.described():
+        if (tag := tag_of(element)) not in tags:
+            continue
+        for (owner, attribute), since in later.items():
+            if owner == tag and element.get(attribute) is not None:
+                message = f"The {attribute} of the {describe(element)} is not read in a file of version {version}."
+                hint = f'It came with {since}: write <robot version="{since}">, or remove it.'
+                yield Defect("later-version", element, message, hint, attribute)
 
 
 def instructions(subject: Subject) -> Iterator[Defect]:
