@@ -26,6 +26,7 @@ LONG_FILES: dict[str, str] = {
     "src/nao_kin/bench/bench_closed.py": "a question with its cases",
     "src/nao_kin/bench/bench_explain.py": "a question with its planted errors",
     "src/nao_kin/bench/bench_sixr.py": "a question with its strata and its peers",
+    "src/nao_kin/calibration/measurements.py": "the kinds of rows side by side, each with its derivatives",
     "src/nao_kin/chain.py": "what any chain is, and the free functions on any of them",
     "src/nao_kin/cli/trajectory_command.py": "three commands on one kind of file",
     "src/nao_kin/crosscheck/explanation.py": "what an explanation says, down to where no usual error explains",

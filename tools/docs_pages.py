@@ -38,6 +38,7 @@ GROUPS: Final[tuple[tuple[str, str, tuple[str, ...]], ...]] = (
     ("api-solving", "API: inverse kinematics", ("ik", "solving")),
     ("api-closed-forms", "API: closed forms", ("analytic",)),
     ("api-moving", "API: trajectories and workspaces", ("trajectory", "workspace")),
+    ("api-calibrating", "API: calibration", ("calibration",)),
     ("api-checking", "API: checking URDF files", ("checks",)),
     ("api-pages", "API: pages", ("view",)),
 )

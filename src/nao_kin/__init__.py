@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from nao_kin.analytic.solutions import Solutions as Solutions
     from nao_kin.analytic.solutions import nearest as nearest
     from nao_kin.analytic.solutions import solve_all as solve_all
+    from nao_kin.calibration.calibration import Calibration as Calibration
+    from nao_kin.calibration.calibration import calibrate as calibrate
+    from nao_kin.calibration.measurements import Measurements as Measurements
     from nao_kin.chain import Chain as Chain
     from nao_kin.chain import ChainJoint as ChainJoint
     from nao_kin.chain import LimitRule as LimitRule
@@ -76,6 +79,7 @@ _HOME = {
     "BatchResult": "ik.batch",
     "BatchSolutions": "analytic.solution_batch",
     "Budget": "ik.reference_loop",
+    "Calibration": "calibration.calibration",
     "Cause": "trajectory.causes",
     "Chain": "chain",
     "ChainJoint": "chain",
@@ -89,6 +93,7 @@ _HOME = {
     "Ledger": "documents.judging",
     "LimitRule": "chain",
     "METHODS": "ik.methods",
+    "Measurements": "calibration.measurements",
     "NaoKinError": "errors",
     "PoseLine": "trajectory.paths",
     "PositionLine": "trajectory.paths",
@@ -106,6 +111,7 @@ _HOME = {
     "Tree": "robot.tree",
     "TreeResult": "ik.tips.tree_problem",
     "UrdfChain": "robot.urdf_chain",
+    "calibrate": "calibration.calibration",
     "check": "checks.checker",
     "compare": "crosscheck",
     "document_chain": "documents.chains",

@@ -7,12 +7,13 @@ and handed on: `identifiability` says them in words.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.calibration.model import MOTIONS
+from nao_kin.calibration.model import MOTIONS, NumberName
 from nao_kin.calibration.parameters import nominal_values
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from nao_kin.arrays import Floats
     from nao_kin.calibration.measurements import Block, Seen
-    from nao_kin.calibration.model import Model, NumberName
+    from nao_kin.calibration.model import Model
 
 __all__ = ["Fit", "System", "solved", "system_of"]
 
@@ -65,7 +66,7 @@ class System:
     def own(self, u: Floats) -> list[Floats]:
         """The unknowns of each block's own."""
         ends = len(self.names) + np.cumsum([0, *(len(block.unknown_names) for block in self.blocks)])
-        return [u[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        return [u[a:b] for a, b in itertools.pairwise(ends.tolist())]
 
     def residuals(self, u: Floats) -> Floats:
         """All residuals in units of their noise (r,)."""
@@ -162,7 +163,7 @@ def system_of(
     values: Mapping[NumberName, float] | None = None,
 ) -> System:
     """The rows and unknowns of calibrating some numbers; placements that a block leaves open are added."""
-    opened = {}
+    opened = dict[NumberName, None]()
     for block in blocks:
         owners = {"base": "base", "tool": models[block.tip].tool_name}
         opened.update({(owners[freed], motion): None for freed in sorted(block.frees) for motion in MOTIONS})

@@ -7,18 +7,19 @@ beside the robot, as where a socket is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from nao_kin.arrays import positive, rows
+from nao_kin.arrays import positive, rows, vector
 from nao_kin.errors import InvalidInputError
 from nao_kin.se3 import as_pose
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from nao_kin.arrays import Floats
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Block", "Measurements", "Seen"]
 
 _MILLIMETRE, _MILLIRADIAN, _PIXEL = 1e-3, 1e-3, 1.0
-_RIGID: Final = 1e-6  # [m] noise of what is known without measuring, as the distance of two holes in one plate
+_RIGID: Final = 2e-5  # [m] noise of what is known without measuring, as the distance of two holes in one plate
 
 
 class Seen(NamedTuple):
@@ -78,7 +79,7 @@ class Block:
         """How many rows there are."""
         return len(self.Q)
 
-    def start(self, T: Floats) -> Floats:
+    def start(self, T: Floats) -> Floats:  # noqa: ARG002
         """First values (k,) of the block's own unknowns, from poses (M, 4, 4) of the tip."""
         return np.zeros(0)
 
@@ -114,7 +115,7 @@ class Poses(Block):
     marker: Floats = field(default_factory=lambda: np.eye(4))
     kind = "poses"
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
         """Position and rotation that are missing, in world axes."""
         at = T @ self.marker
         turn = np.array([pin.log3(M[:3, :3] @ R[:3, :3].T) for M, R in zip(self.measured, at, strict=True)])
@@ -141,7 +142,7 @@ class Positions(Block):
     point: Floats = field(default_factory=lambda: np.zeros(3))
     kind = "positions"
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
         """Position that is missing, in world axes."""
         residuals = self.measured - _points(T, self.point)
         terms = ((np.arange(len(T)), -_moves_point(T, self.point)),)
@@ -174,7 +175,9 @@ class SamePoints(Block):
     def start(self, T: Floats) -> Floats:
         """The means of the tips; at a point that no row is at, the mean of all."""
         tips, count = T[:, :3, 3], int(self.group.max(initial=-1)) + 1
-        means = [tips[self.group == k].mean(axis=0) if (self.group == k).any() else tips.mean(axis=0) for k in range(count)]
+        means = [
+            tips[self.group == k].mean(axis=0) if (self.group == k).any() else tips.mean(axis=0) for k in range(count)
+        ]
         return np.concatenate(means) if means else np.zeros(0)
 
     def seen(self, T: Floats, y: Floats) -> Seen:
@@ -197,7 +200,7 @@ class SamePoints(Block):
             unknown[row, 0, 3 * a : 3 * a + 3] = -apart / length / self.rigid
         return Seen(residuals, ((np.arange(N), D),), unknown)
 
-    def distances(self, T: Floats, y: Floats) -> Floats:
+    def distances(self, T: Floats, y: Floats) -> Floats:  # noqa: ARG002 (nothing is unknown beside the robot)
         """From each tip to the mean of the tips that should be with it."""
         means = np.array([T[self.group == k, :3, 3].mean(axis=0) for k in self.group])
         return np.asarray(np.linalg.norm(T[:, :3, 3] - means.reshape(-1, 3), axis=1))
@@ -230,7 +233,7 @@ class Distances(Block):
         """Half as many as joints."""
         return len(self.measured)
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
         """By how much the distance is too small."""
         first, second = np.arange(0, len(T), 2), np.arange(1, len(T), 2)
         apart = T[second, :3, 3] - T[first, :3, 3]
@@ -446,7 +449,7 @@ class Measurements:
         """
         joints, given = _joints(Q), rows(positions, "positions", 3)
         _same_length(joints, given, "positions")
-        at = rows([point], "point", 3)[0]  # type: ignore[list-item]
+        at = vector(point, "point", 3)
         noises = np.full(3, positive(noise, "noise", "[m]"))
         frees = _frees(base_known, point_known)
         return cls((Positions(joints, noises, tip, (place,) * len(joints), frees=frees, measured=given, point=at),))
@@ -475,7 +478,9 @@ class Measurements:
         """
         parts = [_joints(group, f"group {k}") for k, group in enumerate(groups)]
         if not parts or any(len(part) < 2 for part in parts):
-            raise InvalidInputError("groups", "groups of at least two rows of joints", f"{[len(part) for part in parts]} rows")
+            raise InvalidInputError(
+                "groups", "groups of at least two rows of joints", f"{[len(part) for part in parts]} rows"
+            )
         between = []
         for (a, b), length in (distances or {}).items():
             if not (0 <= a < len(parts) and 0 <= b < len(parts)) or a == b:
@@ -528,7 +533,7 @@ class Measurements:
         """
         joints, known = _joints(Q), None
         if normal is not None:
-            n = rows([normal], "normal", 3)[0]  # type: ignore[list-item]
+            n = vector(normal, "normal", 3)
             length = float(np.linalg.norm(n))
             if length == 0.0:
                 raise InvalidInputError("normal", "a direction", "no length")
@@ -572,7 +577,7 @@ class Measurements:
         """
         joints, given = _joints(Q), rows(pixels, "pixels", 2)
         _same_length(joints, given, "pixels")
-        at = None if point is None else rows([point], "point", 3)[0]  # type: ignore[list-item]
+        at = None if point is None else vector(point, "point", 3)
         return cls(
             (
                 Sightings(
@@ -583,7 +588,7 @@ class Measurements:
                     frees=_frees(base_known, tool_known=True),
                     measured=given,
                     focal=np.array([positive(f, "focal", "[px]") for f in focal]),
-                    centre=rows([centre], "centre", 2)[0],  # type: ignore[list-item]
+                    centre=vector(centre, "centre", 2),
                     camera=np.eye(4) if camera is None else as_pose(camera, "camera").homogeneous,
                     beside=beside,
                     point=at,

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from nao_kin.kernels.joint_path import homogeneous
 from nao_kin.robot.path import walk
 
 if TYPE_CHECKING:
@@ -172,7 +173,7 @@ def model_of(chain: UrdfChain, tool_name: str = "tool") -> Model:
     path, undo = chain.joint_path, np.eye(3)
     joints, aligned = [], []
     for k, step in enumerate(steps):
-        before = _homogeneous(path.rotations[k], path.translations[k])
+        before = homogeneous(path.rotations[k], path.translations[k])
         # The flat form turns each joint's frame so that its axis is z: this is that turn.
         align = (undo @ step.placement.rotation).T @ path.rotations[k]
         joints.append(
@@ -181,21 +182,15 @@ def model_of(chain: UrdfChain, tool_name: str = "tool") -> Model:
                 step.joint.kind == "prismatic",
                 before,
                 step.column,
-                step.multiplier,
-                step.offset,
+                step.coupling.multiplier,
+                step.coupling.offset,
                 step.joint.name in upward,
             )
         )
         aligned.append(align)
         undo = align.T
-    tool = _homogeneous(path.tool_rotation, path.tool_translation)
+    tool = homogeneous(path.tool_rotation, path.tool_translation)
     return Model(chain, tuple(joints), tool, np.array(aligned), tool_name)
-
-
-def _homogeneous(R: Floats, p: Floats) -> Floats:
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, p
-    return T
 
 
 def small_motion(motion: str, amount: float) -> Floats:

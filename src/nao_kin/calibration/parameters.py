@@ -63,8 +63,8 @@ def chosen(parameters: str | Sequence[str], models: Sequence[Model]) -> tuple[Nu
     """The numbers that a word or a list stands for.
 
     Args:
-        parameters: One of `CHOICES`, several joined by ``+`` (``"offsets+tool"``), or a list of words: a joint's name for
-            all of its numbers, ``"joint.zero"`` for one, ``"base"`` or ``"tool"`` for their six.
+        parameters: One of `CHOICES`, several joined by ``+`` (``"offsets+tool"``), or a list of words: a joint's name
+            for all of its numbers, ``"joint.zero"`` for one, ``"base"`` or ``"tool"`` for their six.
         models: The chains.
 
     Raises:
