@@ -28,6 +28,7 @@ LONG_FILES: dict[str, str] = {
     "src/nao_kin/bench/bench_sixr.py": "a question with its strata and its peers",
     "src/nao_kin/calibration/measurements.py": "the kinds of rows side by side, each with its derivatives",
     "src/nao_kin/chain.py": "what any chain is, and the free functions on any of them",
+    "src/nao_kin/cli/check_command.py": "a command with what it is held against, and its repairs",
     "src/nao_kin/cli/trajectory_command.py": "three commands on one kind of file",
     "src/nao_kin/crosscheck/explanation.py": "what an explanation says, down to where no usual error explains",
     "src/nao_kin/crosscheck/search.py": "the search, and the lengths it reads off",

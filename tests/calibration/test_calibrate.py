@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import least_squares
 
 import nao_kin as nk
-from nao_kin.calibration.model import Model, model_of
+from nao_kin.calibration.chain_model import Model, model_of
 from nao_kin.calibration.parameters import chosen, nominal_values
 from nao_kin.chain import random_configurations
 from nao_kin.errors import InvalidInputError, UnknownNameError

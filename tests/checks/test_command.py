@@ -13,7 +13,7 @@ import pytest
 
 import nao_kin as nk
 from nao_kin.checks.catalogue import CATALOGUE
-from nao_kin.checks.departure_finding import departure_finding
+from nao_kin.checks.checker import departure_finding
 from nao_kin.cli.app import main
 
 ROOT = Path(__file__).parent.parent.parent

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import nao_kin as nk
-from nao_kin.urdf.xacro_expressions import RefusedExpressionError, check_expression
+from nao_kin.urdf.xacro_guard import RefusedExpressionError, check_expression
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 import pinocchio as pin
 
+from nao_kin.calibration.chain_model import Model, NumberName, model_of, nominal, placed_by, small_motion
 from nao_kin.calibration.fitting import Fit, solved, system_of
-from nao_kin.calibration.model import Model, NumberName, model_of, nominal, placed_by, small_motion
 from nao_kin.calibration.parameters import chosen, key_of, phrase, unit_of
 from nao_kin.errors import InvalidInputError
 from nao_kin.robot.robot import Robot
@@ -62,7 +62,7 @@ class Calibration:
         model: Its numbers by name.
         measurements: What was measured.
         fit: The least squares behind it.
-        noise: How many times larger than said the noise is, by the residuals that are left.
+        noise: How many times larger than said the noise is, by the residuals that are left [1].
     """
 
     nominal: UrdfChain

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from nao_kin.calibration.model import MOTIONS, NumberName
+from nao_kin.calibration.chain_model import MOTIONS, NumberName
 from nao_kin.calibration.parameters import nominal_values
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nao_kin.arrays import Floats
-    from nao_kin.calibration.measurements import Block, Seen
-    from nao_kin.calibration.model import Model
+    from nao_kin.calibration.chain_model import Model
+    from nao_kin.calibration.measurements import Block, SeenRows
 
 __all__ = ["Fit", "System", "solved", "system_of"]
 
@@ -102,7 +102,7 @@ class System:
         values = self.valued(u)
         return [b.distances(self._poses(b, values), y) for b, y in zip(self.blocks, self.own(u), strict=True)]
 
-    def seen(self, u: Floats) -> list[Seen]:
+    def seen(self, u: Floats) -> list[SeenRows]:
         """The blocks' residuals and derivatives."""
         values = self.valued(u)
         return [b.seen(self._poses(b, values), y) for b, y in zip(self.blocks, self.own(u), strict=True)]

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from nao_kin.arrays import Floats
     from nao_kin.se3 import PoseLike
 
-__all__ = ["Block", "Measurements", "Seen"]
+__all__ = ["Block", "Measurements", "SeenRows"]
 
 _MILLIMETRE, _MILLIRADIAN, _PIXEL = 1e-3, 1e-3, 1.0
 _RIGID: Final = 2e-5  # [m] noise of what is known without measuring, as the distance of two holes in one plate
 
 
-class Seen(NamedTuple):
+class SeenRows(NamedTuple):
     """Residuals of a block and what they depend on.
 
     Attributes:
@@ -83,7 +83,7 @@ class Block:
         """First values (k,) of the block's own unknowns, from poses (M, 4, 4) of the tip."""
         return np.zeros(0)
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> SeenRows:
         """Residuals at poses (M, 4, 4) of the tip and unknowns y (k,)."""
         raise NotImplementedError
 
@@ -103,8 +103,8 @@ class Block:
 
 
 @dataclass(frozen=True, eq=False)
-class Poses(Block):
-    """Poses of a marker on the tip, in the world.
+class MeasuredPoses(Block):
+    """MeasuredPoses of a marker on the tip, in the world.
 
     Attributes:
         measured: (R, 4, 4).
@@ -115,7 +115,7 @@ class Poses(Block):
     marker: Floats = field(default_factory=lambda: np.eye(4))
     kind = "poses"
 
-    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
+    def seen(self, T: Floats, y: Floats) -> SeenRows:  # noqa: ARG002 (nothing is unknown beside the robot)
         """Position and rotation that are missing, in world axes."""
         at = T @ self.marker
         turn = np.array([pin.log3(M[:3, :3] @ R[:3, :3].T) for M, R in zip(self.measured, at, strict=True)])
@@ -130,7 +130,7 @@ class Poses(Block):
 
 
 @dataclass(frozen=True, eq=False)
-class Positions(Block):
+class MeasuredPositions(Block):
     """Places of a point on the tip, in the world.
 
     Attributes:
@@ -142,7 +142,7 @@ class Positions(Block):
     point: Floats = field(default_factory=lambda: np.zeros(3))
     kind = "positions"
 
-    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
+    def seen(self, T: Floats, y: Floats) -> SeenRows:  # noqa: ARG002 (nothing is unknown beside the robot)
         """Position that is missing, in world axes."""
         residuals = self.measured - _points(T, self.point)
         terms = ((np.arange(len(T)), -_moves_point(T, self.point)),)
@@ -180,7 +180,7 @@ class SamePoints(Block):
         ]
         return np.concatenate(means) if means else np.zeros(0)
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> SeenRows:
         """From each point to its tips; and, as rows without joints, what distances of points are off by."""
         N, extra, points = len(T), len(self.between), y.reshape(-1, 3)
         residuals, unknown = np.zeros((N + extra, 3)), np.zeros((N + extra, 3, len(y)))
@@ -198,7 +198,7 @@ class SamePoints(Block):
             residuals[row, 0] = (length - distance) / self.rigid
             unknown[row, 0, 3 * b : 3 * b + 3] = apart / length / self.rigid
             unknown[row, 0, 3 * a : 3 * a + 3] = -apart / length / self.rigid
-        return Seen(residuals, ((np.arange(N), D),), unknown)
+        return SeenRows(residuals, ((np.arange(N), D),), unknown)
 
     def distances(self, T: Floats, y: Floats) -> Floats:  # noqa: ARG002 (nothing is unknown beside the robot)
         """From each tip to the mean of the tips that should be with it."""
@@ -233,7 +233,7 @@ class Distances(Block):
         """Half as many as joints."""
         return len(self.measured)
 
-    def seen(self, T: Floats, y: Floats) -> Seen:  # noqa: ARG002 (nothing is unknown beside the robot)
+    def seen(self, T: Floats, y: Floats) -> SeenRows:  # noqa: ARG002 (nothing is unknown beside the robot)
         """By how much the distance is too small."""
         first, second = np.arange(0, len(T), 2), np.arange(1, len(T), 2)
         apart = T[second, :3, 3] - T[first, :3, 3]
@@ -250,7 +250,7 @@ class Distances(Block):
 
 
 @dataclass(frozen=True, eq=False)
-class Plane(Block):
+class TouchedPlane(Block):
     """The tip touches a plane.
 
     Attributes:
@@ -273,7 +273,7 @@ class Plane(Block):
         normal = np.linalg.svd(tips - tips.mean(axis=0))[2][-1]
         return np.array([*normal, float(normal @ tips.mean(axis=0))])
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> SeenRows:
         """Height of the tips over the plane."""
         normal, height = (self.known[:3], self.known[3]) if self.known is not None else (y[:3], y[3])
         length = float(np.linalg.norm(normal))
@@ -329,7 +329,7 @@ class Sightings(Block):
         found: Floats = np.linalg.lstsq(across.sum(axis=0), np.einsum("nij,nj->i", across, at[:, :3, 3]), rcond=None)[0]
         return found
 
-    def seen(self, T: Floats, y: Floats) -> Seen:
+    def seen(self, T: Floats, y: Floats) -> SeenRows:
         """How far the picture's point is from the seen one."""
         point = y[:3] if self.point is None else self.point
         N = len(T)
@@ -396,7 +396,7 @@ class Measurements:
         tip: str | None = None,
         place: str = "",
     ) -> Measurements:
-        """Poses of a marker on the tip, as a tracker or another limb sees them.
+        """MeasuredPoses of a marker on the tip, as a tracker or another limb sees them.
 
         Args:
             Q: Joints (N, n) [rad or m].
@@ -417,7 +417,7 @@ class Measurements:
         frees = _frees(base_known, marker_known)
         M = np.eye(4) if marker is None else as_pose(marker, "marker").homogeneous
         six = np.repeat([positive(n, "noise", "[m], [rad]") for n in noise], 3)
-        return cls((Poses(joints, six, tip, (place,) * len(joints), frees=frees, measured=given, marker=M),))
+        return cls((MeasuredPoses(joints, six, tip, (place,) * len(joints), frees=frees, measured=given, marker=M),))
 
     @classmethod
     def positions(
@@ -452,7 +452,9 @@ class Measurements:
         at = vector(point, "point", 3)
         noises = np.full(3, positive(noise, "noise", "[m]"))
         frees = _frees(base_known, point_known)
-        return cls((Positions(joints, noises, tip, (place,) * len(joints), frees=frees, measured=given, point=at),))
+        return cls(
+            (MeasuredPositions(joints, noises, tip, (place,) * len(joints), frees=frees, measured=given, point=at),)
+        )
 
     @classmethod
     def same_points(
@@ -502,7 +504,15 @@ class Measurements:
         tip: str | None = None,
         place: str = "",
     ) -> Measurements:
-        """Distances (N,) [m] between the tip's places at joints Q_from (N, n) and Q_to (N, n).
+        """Distances between the tip's places at two rows of joints.
+
+        Args:
+            Q_from: Joints (N, n) [rad or m] at one end.
+            Q_to: Joints (N, n) [rad or m] at the other.
+            distances: What lies between (N,) [m].
+            noise: Standard deviation of a distance [m].
+            tip: The tip of a tree that it is about.
+            place: Rows of one label are held out together when a fit is validated.
 
         Raises:
             InvalidInputError: Shapes that do not fit, or not finite.
@@ -526,7 +536,15 @@ class Measurements:
         tip: str | None = None,
         place: str = "",
     ) -> Measurements:
-        """The tip touches a plane, known by its normal (3,) and height [m] along it in the world, or unknown.
+        """The tip touches a plane.
+
+        Args:
+            Q: Joints (N, n) [rad or m].
+            normal: Its normal (3,) in the world, of any length; None if the plane is unknown.
+            height: Its height along the normal [m].
+            noise: Standard deviation of a row [m].
+            tip: The tip of a tree that it is about.
+            place: Rows of one label are held out together when a fit is validated.
 
         Raises:
             InvalidInputError: Not finite, or a normal of no length.
@@ -539,7 +557,7 @@ class Measurements:
                 raise InvalidInputError("normal", "a direction", "no length")
             known = np.array([*(n / length), height])
         noises = np.array([positive(noise, "noise", "[m]")])
-        return cls((Plane(joints, noises, tip, (place,) * len(joints), known=known),))
+        return cls((TouchedPlane(joints, noises, tip, (place,) * len(joints), known=known),))
 
     @classmethod
     def sightings(
@@ -547,11 +565,9 @@ class Measurements:
         Q: ArrayLike,
         pixels: ArrayLike,
         *,
-        focal: tuple[float, float],
-        centre: tuple[float, float],
+        intrinsics: tuple[float, float, float, float],
         camera: PoseLike | None = None,
         beside: bool = False,
-        base_known: bool = True,
         point: ArrayLike | None = None,
         noise: float = _PIXEL,
         tip: str | None = None,
@@ -562,11 +578,9 @@ class Measurements:
         Args:
             Q: Joints (N, n) [rad or m].
             pixels: Where the point appears (N, 2) [px].
-            focal: Focal lengths [px].
-            centre: Principal point [px].
+            intrinsics: Focal lengths and principal point (fx, fy, cx, cy) [px].
             camera: The camera's frame, z forwards, x right, y down: on the tip, or in the world if `beside`.
             beside: Whether the camera stands beside the robot and looks at a point of its tip.
-            base_known: Whether the world is the chain's base frame; otherwise where the base is, is estimated as well.
             point: The point (3,) [m], in the world or, if `beside`, on the tip; unknown by default.
             noise: Standard deviation of a coordinate [px].
             tip: The tip of a tree that it is about.
@@ -585,10 +599,9 @@ class Measurements:
                     np.full(2, positive(noise, "noise", "[px]")),
                     tip,
                     (place,) * len(joints),
-                    frees=_frees(base_known, tool_known=True),
                     measured=given,
-                    focal=np.array([positive(f, "focal", "[px]") for f in focal]),
-                    centre=vector(centre, "centre", 2),
+                    focal=np.array([positive(f, "intrinsics", "[px]") for f in intrinsics[:2]]),
+                    centre=vector(intrinsics[2:], "intrinsics", 2),
                     camera=np.eye(4) if camera is None else as_pose(camera, "camera").homogeneous,
                     beside=beside,
                     point=at,
@@ -615,9 +628,9 @@ def _frees(base_known: bool, tool_known: bool) -> frozenset[str]:
 
 def _whitened(
     residuals: Floats, terms: tuple[tuple[NDArray[np.intp], Floats], ...], unknown: Floats, noise: Floats
-) -> Seen:
+) -> SeenRows:
     by = noise[:, None]
-    return Seen(residuals / noise, tuple((index, D / by) for index, D in terms), unknown / by)
+    return SeenRows(residuals / noise, tuple((index, D / by) for index, D in terms), unknown / by)
 
 
 def _points(T: Floats, point: Floats) -> Floats:

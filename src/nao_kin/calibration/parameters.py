@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from nao_kin.calibration.model import MOTIONS, nominal, placed_by
+from nao_kin.calibration.chain_model import MOTIONS, nominal, placed_by
 from nao_kin.errors import InvalidInputError, UnknownNameError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from nao_kin.calibration.model import Model, NumberName
+    from nao_kin.calibration.chain_model import Model, NumberName
 
 __all__ = ["CHOICES", "chosen", "every_name", "key_of", "nominal_values", "phrase", "unit_of"]
 

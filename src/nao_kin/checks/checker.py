@@ -32,11 +32,12 @@ from nao_kin.urdf.xacro import expand_xacro, is_xacro_file
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
+    from nao_kin.checks.finding import Finding
     from nao_kin.checks.subject import Rule
     from nao_kin.urdf.resources import MeshRoots
     from nao_kin.urdf.xacro import Expansion
 
-__all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "finding_of"]
+__all__ = ["MOST_OF_A_CODE", "check", "check_bytes", "departure_finding", "finding_of"]
 
 TEXT_RULES: Final[tuple[Rule, ...]] = (
     vocabulary.later_words,
@@ -271,3 +272,27 @@ def _path_of(robot: str | os.PathLike[str]) -> str:
                 return robot
             raise
     return os.fspath(robot)
+
+
+def departure_finding(
+    path: str | os.PathLike[str], code: str, joint: str | None, message: str, hint: str = ""
+) -> Finding:
+    """A finding at a joint of a file, or at its root where no joint is named or the file has none of that name.
+
+    Args:
+        path: The file that departs.
+        code: ``"departs-from-table"`` or ``"departs-from-model"``.
+        joint: Where it departs.
+        message: How, one sentence.
+        hint: What would make the two agree.
+
+    Raises:
+        UrdfError: The file cannot be read.
+    """
+    name = os.fspath(path)
+    data = read_bytes(name)
+    root = read_tree(data, name)
+    outline = Outline(root)
+    at = outline.joint_by_name.get(joint or "", root)
+    subject = Subject(name, data, outline, Positions.of(data, root), Path(name).absolute().parent)
+    return finding_of(subject, Defect(code, at, message, hint, "name"))

@@ -1,11 +1,12 @@
 """What the process that expands a xacro may do: compute for a while, and read files below the allowed folders.
 
-Three locks, one behind the other: expressions are looked at before they are evaluated (`xacro_expressions`), every file
+Three locks, one behind the other: expressions are looked at before they are evaluated, every file
 name is checked before it is opened, and the interpreter itself refuses what got past both.
 """
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import os
 import resource
@@ -14,7 +15,46 @@ import sysconfig
 from pathlib import Path
 from typing import Any
 
-__all__ = ["OutsideError", "Roots", "confine", "limit_resources"]
+__all__ = ["OutsideError", "RefusedExpressionError", "Roots", "check_expression", "confine", "limit_resources"]
+
+_LONGEST = 4096
+_ALLOWED = (
+    *(ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.BinOp, ast.operator, ast.UnaryOp, ast.unaryop, ast.Compare),
+    *(ast.cmpop, ast.IfExp, ast.Call, ast.keyword, ast.Attribute, ast.Subscript, ast.Slice, ast.Name, ast.Constant),
+    *(ast.List, ast.Tuple, ast.Dict, ast.Set, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp),
+    *(ast.comprehension, ast.Starred, ast.JoinedStr, ast.FormattedValue, ast.expr_context),
+)
+_REACHING = frozenset({"format", "format_map", "mro", "tb_frame", "tb_next"})
+"""Attributes without an underscore ahead that lead from a value to the interpreter."""
+
+_FRAMES = ("gi_", "cr_", "ag_", "co_", "f_back", "f_builtins", "f_code", "f_globals", "f_locals", "func_")
+
+
+class RefusedExpressionError(ValueError):
+    """An expression asks for more than values; the message is a predicate."""
+
+
+def check_expression(text: str) -> None:
+    """Make sure that an expression only computes.
+
+    Raises:
+        RefusedExpressionError: It holds something else; the message says what.
+        SyntaxError: It is no expression.
+    """
+    if len(text) > _LONGEST:
+        raise RefusedExpressionError(f"has more than {_LONGEST} characters")
+    for node in ast.walk(ast.parse(text.strip(), mode="eval")):
+        if not isinstance(node, _ALLOWED):
+            raise RefusedExpressionError(f"holds a {type(node).__name__}, which is not evaluated")
+        if isinstance(node, ast.Name) and node.id.startswith("__"):
+            raise RefusedExpressionError(f"names {node.id}")
+        if isinstance(node, ast.Attribute) and _reaches(node.attr):
+            raise RefusedExpressionError(f"asks for the attribute {node.attr}, which leads out of the expression")
+
+
+def _reaches(attribute: str) -> bool:
+    return attribute.startswith("_") or attribute in _REACHING or attribute.startswith(_FRAMES)
+
 
 _SECONDS = 10  # of processor time
 _MEMORY = 1 << 30  # [bytes]

@@ -152,7 +152,7 @@ def _patch_substitutions(substitutions: Any, roots: Any, where: tuple[Path, Any]
 
 
 def _checked(evaluate: Any) -> Any:
-    from nao_kin.urdf.xacro_expressions import check_expression
+    from nao_kin.urdf.xacro_guard import check_expression
 
     def wrapped(text: str, *arguments: Any) -> Any:
         check_expression(text)
@@ -200,8 +200,7 @@ def _said(error: BaseException) -> str:
 
 
 def _is_refusal(error: BaseException | None) -> bool:
-    from nao_kin.urdf.xacro_expressions import RefusedExpressionError
-    from nao_kin.urdf.xacro_guard import OutsideError
+    from nao_kin.urdf.xacro_guard import OutsideError, RefusedExpressionError
 
     while error is not None:
         if isinstance(error, OutsideError | RefusedExpressionError | MemoryError | RecursionError):
