@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nao_kin as nk
-from nao_kin.bench.bench_explain import KINDS, Verdict, planted_tables, verdict_of
+from nao_kin.bench.bench_explain import KINDS, ExplanationVerdict, planted_tables, verdict_of
 from nao_kin.documents.chains import DOCUMENT_CHAINS
 from nao_kin.se3 import position_distance, rotation_distance
 from tests.conftest import robot
@@ -89,13 +89,13 @@ def test_the_other_sides_table() -> None:
 
 
 @pytest.fixture(scope="module")
-def verdicts() -> list[Verdict]:
+def verdicts() -> list[ExplanationVerdict]:
     chains = [robot("jaco2").chain("arm"), robot("nao").chain("left_arm"), robot("nao").chain("right_leg")]
     singles = [verdict_of(planted) for planted in planted_tables(chains, 30, 1, 11)]
     return singles + [verdict_of(planted) for planted in planted_tables(chains, 12, 2, 12)]
 
 
-def test_planted_errors_are_explained_and_named(verdicts: list[Verdict]) -> None:
+def test_planted_errors_are_explained_and_named(verdicts: list[ExplanationVerdict]) -> None:
     """Forty tables of the kind that `nao-kin bench explain` makes seven hundred of, with the same goals."""
     singles, doubles = ([v for v in verdicts if len(v.kinds) == n] for n in (1, 2))
     assert {v.kinds[0] for v in singles} >= set(KINDS) - {"sign of theta's offset", "missing base"}
@@ -105,7 +105,7 @@ def test_planted_errors_are_explained_and_named(verdicts: list[Verdict]) -> None
         assert sum(v.named for v in asked) >= least * len(asked)
 
 
-def test_no_explanation_is_reported_that_the_poses_refute(verdicts: list[Verdict]) -> None:
+def test_no_explanation_is_reported_that_the_poses_refute(verdicts: list[ExplanationVerdict]) -> None:
     assert sum(v.refuted for v in verdicts) == 0
 
 

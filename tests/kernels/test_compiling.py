@@ -232,7 +232,7 @@ def compiled_files() -> set[Path]:
 
 def test_the_digest_covers_every_file_with_a_compiled_function() -> None:
     files = compiled_files()
-    assert len(files) > 40
+    assert len(files) >= 25
     assert any(len(path.relative_to(Path(nao_kin.__file__).parent).parts) > 2 for path in files)  # in subfolders too
     assert files <= set(compiling._sources())
 
