@@ -120,7 +120,7 @@ def test_a_plain_least_squares_finds_the_same() -> None:
     def residuals(x: np.ndarray) -> np.ndarray:
         return np.concatenate([places[k] - chain.pose(q + x).translation for k, q in enumerate(Q)])
 
-    words = [f"{name}.zero" for name in chain.joint_names[:4]]  # the last one turns the hand about itself
+    words = [f"{name}.zero" for name in chain.joint_names[:4]]  # all but the last, which both leave where it is
     plain = least_squares(lambda x: residuals(np.append(x, 0.0)), np.zeros(4), xtol=1e-14, ftol=1e-14).x
     found = nk.calibrate(chain, nk.Measurements.positions(Q, places), words, robust=False)
     assert [e.value for e in found.estimates] == pytest.approx(plain, abs=1e-6)
